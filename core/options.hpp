@@ -1,0 +1,24 @@
+// What a user has a reason to turn. Constants of the algorithms stay beside their use.
+#pragma once
+
+#include <functional>
+#include <limits>
+
+#include "tenon/core/iteration.hpp"
+
+namespace tenon {
+
+struct Options {
+  double tolerance = 1e-8;       // a solve ends when every scaled residual is at most this
+  int max_iterations = 3000;
+  double time_limit = std::numeric_limits<double>::infinity();  // s
+  bool warm_start = false;       // the point's lambda and z are a guess worth keeping: start near them, with a small barrier parameter
+
+  /// Called at every iterate, the first included; return false to stop there (Status::stopped).
+  std::function<bool(const Iteration&)> on_iteration = nullptr;
+};
+
+/// Throws std::invalid_argument, naming the option, where one makes no sense (tolerance <= 0, a negative limit, NaN).
+void validate(const Options& options);
+
+}  // namespace tenon

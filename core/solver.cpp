@@ -1,0 +1,42 @@
+#include "tenon/core/solver.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace tenon {
+
+namespace {
+
+void validate_interval(const std::string& name, double lower, double upper) {
+  if (std::isnan(lower) || std::isnan(upper) || lower > upper || lower == kInfinity<double> || upper == -kInfinity<double>) {
+    throw std::invalid_argument("bounds of " + name + " are [" + std::to_string(lower) + ", " + std::to_string(upper) +
+                                "] (expected lower <= upper, not NaN)");
+  }
+}
+
+void validate_length(const std::string& name, Eigen::Index found, Eigen::Index expected) {
+  if (found != expected) {
+    throw std::invalid_argument("point." + name + " has " + std::to_string(found) + " entries (expected " + std::to_string(expected) + ")");
+  }
+}
+
+}  // namespace
+
+void validate(const Nlp& problem, const Bounds& bounds) {
+  for (int i = 0; i < problem.num_variables(); ++i) validate_interval(problem.variable_name(i), bounds.x_lower[i], bounds.x_upper[i]);
+  for (int j = 0; j < problem.num_constraints(); ++j) {
+    validate_interval(problem.constraint_name(j), bounds.c_lower[j], bounds.c_upper[j]);
+    if (!(bounds.compliance[j] >= 0)) {
+      throw std::invalid_argument("compliance of " + problem.constraint_name(j) + " is " + std::to_string(bounds.compliance[j]) +
+                                  " (expected 0 or more)");
+    }
+  }
+}
+
+void validate(const Nlp& problem, const Point& point) {
+  validate_length("x", point.x.size(), problem.num_variables());
+  validate_length("lambda", point.lambda.size(), problem.num_constraints());
+  validate_length("z", point.z.size(), problem.num_variables());
+}
+
+}  // namespace tenon
