@@ -7,7 +7,7 @@
 #define EIGEN_MAX_ALIGN_BYTES 32
 #define EIGEN_MAX_STATIC_ALIGN_BYTES 32
 
-#include <Eigen/Core>
+#include <Eigen/Dense>
 #include <Eigen/SparseCore>
 
 static_assert(EIGEN_MAX_STATIC_ALIGN_BYTES == 32, "include <tenon/core/eigen.hpp> before any header of Eigen");

@@ -1,0 +1,188 @@
+// The barrier problem: the user's problem with a slack for each row and a logarithmic wall at each bound.
+//
+//     min  phi = f(x) + sum of e (e/(2 D) + preload) - mu sum of log(distances)     s.t.  r_c = c(x) - s - e = 0
+//
+// It owns the evaluations at the current iterate and knows every residual; it knows no step and no linear algebra.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "tenon/core/point.hpp"
+#include "tenon/solvers/newton_kkt/iterate.hpp"
+
+namespace tenon {
+
+template <class Scalar>
+struct BarrierError {
+  Scalar stationarity = 0;     // |grad f + J' lambda + z_u - z_l|_inf, slacks' stationarity included
+  Scalar primal = 0;           // |c(x) - s - e|_inf
+  Scalar complementarity = 0;  // max |product - mu|
+  Scalar scale = 1;            // s_d of [WB06, eq. 6]
+
+  Scalar max_scaled() const { return std::max({stationarity / scale, primal, complementarity / scale}); }
+};
+
+template <NonlinearProgram P>
+class BarrierProblem {
+ public:
+  using Scalar = typename P::Scalar;
+  using VectorN = VectorNOf<P>;
+  using VectorM = VectorMOf<P>;
+
+  explicit BarrierProblem(const P& problem)
+      : problem_(problem),
+        n_(problem.num_variables()),
+        m_(problem.num_constraints()),
+        workspace_(problem.make_workspace()),
+        bounds_(n_, m_),
+        x_box_(n_),
+        s_box_(m_),
+        jacobian_(zero_jacobian(problem)),
+        hessian_(zero_hessian(problem)) {
+    gradient_.setZero(n_);
+    stationarity_.setZero(n_);
+  }
+
+  int n() const { return n_; }
+  int m() const { return m_; }
+  const BoundsOf<P>& bounds() const { return bounds_; }
+  const BarrierBox<Scalar, P::kVariables>& x_box() const { return x_box_; }
+  const BarrierBox<Scalar, P::kConstraints>& s_box() const { return s_box_; }
+  int sides() const { return x_box_.sides() + s_box_.sides(); }
+
+  const VectorN& gradient() const { return gradient_; }
+  const JacobianOf<P>& jacobian() const { return jacobian_; }
+  const HessianOf<P>& hessian() const { return hessian_; }
+  HessianOf<P>& hessian() { return hessian_; }
+
+  /// grad f + J' lambda, of the last linearise().
+  const VectorN& stationarity() const { return stationarity_; }
+
+  /// Takes the problem's bounds of this moment; moves fixed variables and slacks to their values.
+  void take_bounds(Iterate<P>& at) {
+    problem_.bounds(bounds_);
+    x_box_.set(bounds_.x_lower, bounds_.x_upper, at.x);
+    s_box_.set(bounds_.c_lower, bounds_.c_upper, at.s);
+    compliant_ = (bounds_.compliance.array() > 0).any();
+    all_compliant_ = m_ > 0 && (bounds_.compliance.array() > 0).all();
+  }
+
+  /// f and c at at.x. False where a value is not finite.
+  bool evaluate(Iterate<P>& at) {
+    problem_.prepare(at.x, workspace_);
+    at.objective = problem_.objective(at.x, workspace_);
+    problem_.constraints(at.x, workspace_, at.constraints);
+    return std::isfinite(at.objective) && at.constraints.allFinite();
+  }
+
+  /// Brings the shared workspace back to `at` after trial points elsewhere.
+  void return_to(const Iterate<P>& at) { problem_.prepare(at.x, workspace_); }
+
+  /// Gradient, Jacobian and grad f + J' lambda at `at`, where evaluate() was last called. False where a value is not finite.
+  bool linearise(const Iterate<P>& at) {
+    problem_.gradient(at.x, workspace_, gradient_);
+    problem_.jacobian(at.x, workspace_, values_of(jacobian_));
+    update_stationarity(at);
+    return stationarity_.allFinite();
+  }
+
+  void update_stationarity(const Iterate<P>& at) {
+    stationarity_ = gradient_;
+    stationarity_.noalias() += jacobian_.transpose() * at.lambda;
+  }
+
+  void evaluate_hessian(const Iterate<P>& at) { problem_.hessian(at.x, Scalar(1), at.lambda, workspace_, values_of(hessian_)); }
+
+  /// r_c = c(x) - s - D (lambda - preload)
+  auto row_residual(const Iterate<P>& at) const {
+    return (at.constraints - at.s - bounds_.compliance.cwiseProduct(at.lambda - bounds_.preload)).eval();
+  }
+
+  bool all_rows_compliant() const { return all_compliant_; }
+
+  /// lambda such that every row is met: e = c - s.
+  void let_rows_give_way(Iterate<P>& at) const {
+    at.lambda = bounds_.preload + (at.constraints - at.s).cwiseQuotient(bounds_.compliance);
+  }
+
+  /// Derivative of phi along (dx, ds) where the rows keep giving way: grad f' dx + lambda' (J dx - ds) + barrier.
+  Scalar give_way_slope(const Iterate<P>& at, const Step<P>& step, Scalar mu) const {
+    return gradient_.dot(step.x) + (jacobian_ * step.x - step.s).dot(at.lambda) + logarithms_slope(at, step, mu);
+  }
+
+  /// theta = |r_c|_1
+  Scalar violation(const Iterate<P>& at) const { return row_residual(at).template lpNorm<1>(); }
+
+  /// phi of `at` for this mu.
+  Scalar barrier_objective(const Iterate<P>& at, Scalar mu) const {
+    Scalar phi = at.objective;
+    if (compliant_) {
+      const auto lean = (at.lambda - bounds_.preload).array();  // e = D lean
+      phi += (bounds_.compliance.array() * lean * (lean / 2 + bounds_.preload.array())).sum();
+    }
+    if (sides() > 0) phi -= mu * (x_box_.log_barrier(at.x.array()) + s_box_.log_barrier(at.s.array()));
+    return phi;
+  }
+
+  /// Derivative of phi along the step, at the linearised iterate.
+  Scalar barrier_slope(const Iterate<P>& at, const Step<P>& step, Scalar mu) const {
+    Scalar slope = gradient_.dot(step.x);
+    if (compliant_) slope += (bounds_.compliance.array() * at.lambda.array() * step.lambda.array()).sum();
+    return slope + logarithms_slope(at, step, mu);
+  }
+
+  /// How far the linearised iterate is from solving the barrier problem of this mu (mu = 0: the problem itself).
+  BarrierError<Scalar> error(const Iterate<P>& at, Scalar mu) const {
+    BarrierError<Scalar> out;
+    const auto free_x = x_box_.free_mask(), free_s = s_box_.free_mask();
+    out.stationarity = (free_x * (stationarity_.array() + at.zx.upper - at.zx.lower)).abs().maxCoeff();
+    Scalar multipliers = 0;
+    if (m_ > 0) {
+      out.stationarity = std::max(out.stationarity, (free_s * (at.zs.upper - at.zs.lower - at.lambda.array())).abs().maxCoeff());
+      out.primal = row_residual(at).template lpNorm<Eigen::Infinity>();
+      multipliers = at.lambda.template lpNorm<1>();
+    }
+    if (sides() > 0) {
+      multipliers += (at.zx.upper + at.zx.lower).sum();
+      out.complementarity =
+          std::max(x_box_.complementarity(at.x.array(), at.zx, mu), s_box_.complementarity(at.s.array(), at.zs, mu));
+    }
+    constexpr Scalar kMultiplierScale = 100;
+    out.scale = std::max(kMultiplierScale, multipliers / Scalar(std::max(1, n_ + m_))) / kMultiplierScale;
+    return out;
+  }
+
+  /// Mean product of multipliers and distances; 0 without bounds.
+  Scalar mean_complementarity(const Iterate<P>& at) const {
+    if (sides() == 0) return 0;
+    return (x_box_.products(at.x.array(), at.zx).sum + s_box_.products(at.s.array(), at.zs).sum) / Scalar(sides());
+  }
+
+ private:
+  Scalar logarithms_slope(const Iterate<P>& at, const Step<P>& step, Scalar mu) const {
+    return x_box_.barrier_slope(at.x.array(), step.x.array(), mu) + s_box_.barrier_slope(at.s.array(), step.s.array(), mu);
+  }
+
+  static JacobianOf<P> zero_jacobian(const P& problem) {
+    if constexpr (kFixedSize<P>) return JacobianOf<P>::Zero();
+    else return problem.jacobian_pattern().zero_matrix();
+  }
+  static HessianOf<P> zero_hessian(const P& problem) {
+    if constexpr (kFixedSize<P>) return HessianOf<P>{};
+    else return problem.hessian_pattern().zero_matrix();
+  }
+
+  const P& problem_;
+  int n_, m_;
+  WorkspaceOf<P> workspace_;
+  BoundsOf<P> bounds_;
+  BarrierBox<Scalar, P::kVariables> x_box_;
+  BarrierBox<Scalar, P::kConstraints> s_box_;
+  bool compliant_ = false, all_compliant_ = false;
+  VectorN gradient_, stationarity_;
+  JacobianOf<P> jacobian_;
+  HessianOf<P> hessian_;
+};
+
+}  // namespace tenon

@@ -1,0 +1,144 @@
+// Filter line search: shortens the step until the new point improves the violation theta or the barrier objective phi enough, against the
+// current point and against the filter; tries second-order corrections where a full step makes the violation worse.  [WB06, sec. 2.3, 2.4]
+#pragma once
+
+#include "tenon/solvers/newton_kkt/filter.hpp"
+#include "tenon/solvers/newton_kkt/newton_system.hpp"
+
+namespace tenon {
+
+template <NonlinearProgram P, class Kkt>
+class FilterLineSearch {
+ public:
+  using Scalar = typename P::Scalar;
+
+  FilterLineSearch(int n, int m) : corrected_(n, m) { soc_residual_.setZero(m); }
+
+  /// Forgets the filter: the barrier objective has changed. theta_max and theta_min follow the first violation of the solve.
+  void reset() { filter_.clear(); }
+  void start(Scalar theta) {
+    filter_.clear();
+    theta_max_ = Scalar(1e4) * std::max(Scalar(1), theta);
+    theta_min_ = Scalar(1e-4) * std::max(Scalar(1), theta);
+  }
+
+  int trials() const { return trials_; }
+  Scalar alpha() const { return alpha_; }
+
+  /// Looks for an acceptable `trial` = now + alpha step, alpha <= alpha_max; `step` becomes the one taken. False where there is none.
+  bool search(BarrierProblem<P>& barrier, NewtonSystem<P, Kkt>& system, const Iterate<P>& now, Step<P>& step, Scalar alpha_max, Scalar tau,
+              Scalar mu, Iterate<P>& trial) {
+    theta_ = barrier.violation(now);
+    phi_ = barrier.barrier_objective(now, mu);
+    slope_ = barrier.barrier_slope(now, step, mu);
+    trials_ = 0;
+
+    const Scalar alpha_min = smallest_step();
+    for (alpha_ = alpha_max; alpha_ >= alpha_min; alpha_ /= 2) {
+      if (try_point(barrier, now, step, mu, trial)) return true;
+      const bool violation_grew = trial_finite_ && trial_theta_ >= theta_;
+      if (trials_ == 1 && violation_grew && correct(barrier, system, now, step, tau, mu, trial)) return true;
+    }
+    return barrier.all_rows_compliant() && give_way(barrier, now, step, alpha_max, mu, trial);
+  }
+
+ private:
+  static constexpr Scalar kGammaTheta = Scalar(1e-5), kGammaPhi = Scalar(1e-8), kDelta = 1, kSTheta = Scalar(1.1), kSPhi = Scalar(2.3),
+                          kEtaPhi = Scalar(1e-8), kGammaAlpha = Scalar(0.05), kKappaSoc = Scalar(0.99);
+  static constexpr int kMaxCorrections = 4;
+
+  /// now + alpha step, evaluated and judged.
+  bool try_point(BarrierProblem<P>& barrier, const Iterate<P>& now, const Step<P>& step, Scalar mu, Iterate<P>& trial) {
+    ++trials_;
+    trial.x = now.x + alpha_ * step.x;
+    trial.s = now.s + alpha_ * step.s;
+    trial.lambda = now.lambda + alpha_ * step.lambda;
+    trial_finite_ = barrier.evaluate(trial);
+    if (!trial_finite_) return false;
+    trial_theta_ = barrier.violation(trial);
+    return acceptable(trial_theta_, barrier.barrier_objective(trial, mu));
+  }
+
+  /// [WB06, eq. 18-20, with the rounding of phi allowed for]
+  bool acceptable(Scalar theta, Scalar phi) {
+    if (!std::isfinite(phi) || theta > theta_max_ || !filter_.accepts(theta, phi)) return false;
+    const Scalar rounding = 10 * std::numeric_limits<Scalar>::epsilon() * std::abs(phi_);
+    if (theta_ <= theta_min_ && switching()) return phi <= phi_ + kEtaPhi * alpha_ * slope_ + rounding;
+    if (theta <= (1 - kGammaTheta) * theta_ || phi <= phi_ - kGammaPhi * theta_ + rounding) {
+      filter_.add(theta_, phi_);
+      return true;
+    }
+    return false;
+  }
+
+  /// The step promises more descent than its violation is worth.
+  bool switching() const {
+    return slope_ < 0 && alpha_ * std::pow(-slope_, kSPhi) > kDelta * std::pow(theta_, kSTheta);
+  }
+
+  /// [WB06, eq. 23]
+  Scalar smallest_step() const {
+    Scalar smallest = kGammaTheta;
+    if (slope_ < 0) {
+      smallest = std::min(smallest, kGammaPhi * theta_ / -slope_);
+      if (theta_ <= theta_min_) smallest = std::min(smallest, kDelta * std::pow(theta_, kSTheta) / std::pow(-slope_, kSPhi));
+    }
+    return std::max(kGammaAlpha * smallest, Scalar(1e-14));
+  }
+
+  /// Second-order corrections: the row residual gathers what the full step left.  [WB06, algorithm A, steps]
+  bool correct(BarrierProblem<P>& barrier, NewtonSystem<P, Kkt>& system, const Iterate<P>& now, Step<P>& step, Scalar tau, Scalar mu,
+               Iterate<P>& trial) {
+    const Scalar alpha_full = alpha_;
+    Scalar theta_before = theta_;
+    soc_residual_ = alpha_ * barrier.row_residual(now) + barrier.row_residual(trial);
+    for (int k = 0; k < kMaxCorrections; ++k) {
+      system.corrected_step(barrier, now, mu, soc_residual_, corrected_);
+      alpha_ = std::min(barrier.x_box().max_step(now.x.array(), corrected_.x.array(), tau),
+                        barrier.s_box().max_step(now.s.array(), corrected_.s.array(), tau));
+      if (try_point(barrier, now, corrected_, mu, trial)) {
+        std::swap(step, corrected_);
+        return true;
+      }
+      if (!trial_finite_ || trial_theta_ > kKappaSoc * theta_before) break;
+      theta_before = trial_theta_;
+      soc_residual_ = alpha_ * soc_residual_ + barrier.row_residual(trial);
+    }
+    alpha_ = alpha_full;
+    return false;
+  }
+
+  /// Where every row is compliant, letting all of them give way (e = c - s) makes any point feasible, and the Newton step is a descent
+  /// direction of phi taken there, whatever lambda was: the search that cannot fail for want of feasibility.  newton_kkt.md (12)
+  bool give_way(BarrierProblem<P>& barrier, const Iterate<P>& now, const Step<P>& step, Scalar alpha_max, Scalar mu, Iterate<P>& trial) {
+    trial = now;
+    barrier.let_rows_give_way(trial);
+    const Scalar phi = barrier.barrier_objective(trial, mu);
+    const Scalar slope = barrier.give_way_slope(trial, step, mu);
+    if (!(slope < 0)) return false;
+    const Scalar rounding = 10 * std::numeric_limits<Scalar>::epsilon() * std::abs(phi);
+    for (alpha_ = alpha_max; alpha_ >= alpha_max * Scalar(1e-10); alpha_ /= 2) {
+      ++trials_;
+      trial.x = now.x + alpha_ * step.x;
+      trial.s = now.s + alpha_ * step.s;
+      if (!barrier.evaluate(trial)) continue;
+      barrier.let_rows_give_way(trial);
+      if (barrier.barrier_objective(trial, mu) <= phi + Scalar(1e-4) * alpha_ * slope + rounding) {
+        filter_.clear();
+        return true;
+      }
+    }
+    return false;
+  }
+
+  Filter<Scalar> filter_;
+  Scalar theta_max_ = 0, theta_min_ = 0;
+  Scalar theta_ = 0, phi_ = 0, slope_ = 0;  // of the current iterate
+  Scalar alpha_ = 0, trial_theta_ = 0;
+  bool trial_finite_ = false;
+  int trials_ = 0;
+  Step<P> corrected_;
+  VectorMOf<P> soc_residual_;
+};
+
+}  // namespace tenon

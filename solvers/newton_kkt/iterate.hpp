@@ -1,0 +1,50 @@
+// A primal-dual iterate of the interior-point method, and the step from one to the next.
+#pragma once
+
+#include "tenon/core/nlp.hpp"
+#include "tenon/solvers/newton_kkt/barrier_box.hpp"
+
+namespace tenon {
+
+template <class P>
+struct Iterate {
+  using Scalar = typename P::Scalar;
+
+  VectorNOf<P> x;       // n
+  VectorMOf<P> s;       // m: slack of each row
+  VectorMOf<P> lambda;  // m
+  BoxMultipliers<Scalar, P::kVariables> zx;
+  BoxMultipliers<Scalar, P::kConstraints> zs;
+  Scalar objective = 0;
+  VectorMOf<P> constraints;  // m: c(x)
+
+  Iterate(int n, int m) {
+    x.setZero(n);
+    s.setZero(m);
+    lambda.setZero(m);
+    constraints.setZero(m);
+    zx.lower.setZero(n), zx.upper.setZero(n);
+    zs.lower.setZero(m), zs.upper.setZero(m);
+  }
+};
+
+template <class P>
+struct Step {
+  using Scalar = typename P::Scalar;
+
+  VectorNOf<P> x;
+  VectorMOf<P> s;
+  VectorMOf<P> lambda;
+  BoxMultipliers<Scalar, P::kVariables> zx;
+  BoxMultipliers<Scalar, P::kConstraints> zs;
+
+  Step(int n, int m) {
+    x.setZero(n);
+    s.setZero(m);
+    lambda.setZero(m);
+    zx.lower.setZero(n), zx.upper.setZero(n);
+    zs.lower.setZero(m), zs.upper.setZero(m);
+  }
+};
+
+}  // namespace tenon

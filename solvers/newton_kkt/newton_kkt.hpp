@@ -1,0 +1,207 @@
+// Newton-KKT: a primal-dual interior-point method with a filter line search. One template for small problems of fixed size (no allocation,
+// no virtual call) and for every `Nlp` (sparse); the linear algebra is an object (kkt_of.hpp). Derivation: newton_kkt.md.
+//
+// [WB06] A. Waechter, L. T. Biegler, On the implementation of an interior-point filter line-search algorithm for large-scale nonlinear
+//        programming, Mathematical Programming 106 (2006).
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "tenon/core/options.hpp"
+#include "tenon/core/result.hpp"
+#include "tenon/solvers/newton_kkt/barrier_parameter.hpp"
+#include "tenon/solvers/newton_kkt/filter_line_search.hpp"
+
+namespace tenon {
+
+template <NonlinearProgram P, class Kkt = KktOf<P>, class Clock = std::chrono::steady_clock>
+class NewtonKkt {
+ public:
+  using Scalar = typename P::Scalar;
+
+  /// Allocates all that a solve needs. The problem must outlive this; its bounds are asked for at every solve.
+  explicit NewtonKkt(const P& problem, Options options = {})
+      : problem_(problem),
+        options_(std::move(options)),
+        barrier_(problem),
+        system_(problem),
+        line_search_(barrier_.n(), barrier_.m()),
+        now_(barrier_.n(), barrier_.m()),
+        trial_(barrier_.n(), barrier_.m()),
+        step_(barrier_.n(), barrier_.m()) {}
+
+  /// Starts from `point`, ends in it. Allocates nothing, throws nothing.
+  Result solve(PointOf<P>& point) {
+    begin_ = Clock::now();
+    std::optional<Status> ended = start(point);
+    while (!ended) {
+      measure();
+      if ((ended = stop())) break;
+      update_barrier();
+      if ((ended = factor())) break;
+      compute_step();
+      if ((ended = search())) break;
+      accept();
+    }
+    return finish(point, *ended);
+  }
+
+  Options& options() { return options_; }
+
+ private:
+  std::optional<Status> start(PointOf<P>& point) {
+    now_.x = point.x;
+    now_.lambda = point.lambda;
+    iterations_ = tiny_steps_ = 0;
+    alpha_primal_ = alpha_dual_ = 0;
+    system_.reset();
+    barrier_.take_bounds(now_);
+
+    const Scalar push = options_.warm_start ? kWarmPush : kColdPush;
+    barrier_.x_box().push_inside(now_.x.array(), push, push);
+    if (!barrier_.evaluate(now_)) return Status::invalid_start;
+    set_slacks(push);
+    if (!barrier_.linearise(now_)) return Status::invalid_start;
+    if (options_.warm_start) warm_multipliers(point);
+    else cold_multipliers();
+    if (barrier_.sides() == 0) mu_.switch_off();
+    line_search_.start(barrier_.violation(now_));
+    return std::nullopt;
+  }
+
+  /// Slacks start at their rows' values, inside their bounds.
+  void set_slacks(Scalar push) {
+    const auto& box = barrier_.s_box();
+    now_.s = (box.free_mask() > 0).select(now_.constraints, now_.s);
+    box.push_inside(now_.s.array(), push, push);
+  }
+
+  void cold_multipliers() {
+    mu_.start(BarrierParameter<Scalar>::kInitial, tolerance());
+    barrier_.x_box().fill(now_.zx, 1);
+    barrier_.s_box().fill(now_.zs, 1);
+    if (!system_.least_squares_multipliers(barrier_, now_)) now_.lambda.setZero();
+    barrier_.update_stationarity(now_);
+  }
+
+  void warm_multipliers(const PointOf<P>& point) {
+    mu_.start(0, tolerance());
+    barrier_.x_box().split(now_.x.array(), point.z.array(), mu_.value(), now_.zx);
+    barrier_.s_box().split(now_.s.array(), point.lambda.array(), mu_.value(), now_.zs);
+    mu_.start(std::min(barrier_.mean_complementarity(now_), BarrierParameter<Scalar>::kInitial), tolerance());
+  }
+
+  void measure() {
+    error_ = barrier_.error(now_, 0);
+    if (options_.on_iteration) stopped_ = !options_.on_iteration(describe());
+  }
+
+  std::optional<Status> stop() {
+    if (error_.max_scaled() <= tolerance()) return Status::solved;
+    if (options_.on_iteration && stopped_) return Status::stopped;
+    if (iterations_ >= options_.max_iterations) return Status::iteration_limit;
+    if (std::isfinite(options_.time_limit) && elapsed() >= options_.time_limit) return Status::time_limit;
+    if (tiny_steps_ >= 2 && mu_.at_end()) return no_progress();
+    if (now_.objective < -kDivergence && error_.primal <= tolerance()) return Status::unbounded;
+    if (now_.x.template lpNorm<Eigen::Infinity>() > kDivergence) return Status::unbounded;
+    return std::nullopt;
+  }
+
+  /// The next barrier problem, as soon as this one is solved well enough; several at once where the iterate allows it.
+  void update_barrier() {
+    while (!mu_.at_end() && (mu_.solved(barrier_.error(now_, mu_.value()).max_scaled()) || tiny_steps_ > 0)) {
+      mu_.decrease();
+      line_search_.reset();
+      tiny_steps_ = 0;
+    }
+  }
+
+  std::optional<Status> factor() {
+    barrier_.evaluate_hessian(now_);
+    if (system_.factor(barrier_, now_, mu_.value())) return std::nullopt;
+    return Status::numerical_failure;
+  }
+
+  void compute_step() {
+    system_.step(barrier_, now_, mu_.value(), step_);
+    const Scalar tau = mu_.tau();
+    alpha_primal_ = std::min(barrier_.x_box().max_step(now_.x.array(), step_.x.array(), tau),
+                             barrier_.s_box().max_step(now_.s.array(), step_.s.array(), tau));
+    alpha_dual_ = std::min(barrier_.x_box().max_multiplier_step(now_.zx, step_.zx, tau),
+                           barrier_.s_box().max_multiplier_step(now_.zs, step_.zs, tau));
+  }
+
+  std::optional<Status> search() {
+    if (!step_.x.allFinite() || !step_.lambda.allFinite()) return Status::numerical_failure;
+    if (line_search_.search(barrier_, system_, now_, step_, alpha_primal_, mu_.tau(), mu_.value(), trial_)) return std::nullopt;
+    barrier_.return_to(now_);
+    return no_progress();
+  }
+
+  void accept() {
+    alpha_primal_ = line_search_.alpha();
+    const Scalar largest = (step_.x.array().abs() / (1 + now_.x.array().abs())).maxCoeff() * alpha_primal_;
+    tiny_steps_ = largest < 10 * std::numeric_limits<Scalar>::epsilon() ? tiny_steps_ + 1 : 0;
+
+    trial_.zx.lower = now_.zx.lower + alpha_dual_ * step_.zx.lower;
+    trial_.zx.upper = now_.zx.upper + alpha_dual_ * step_.zx.upper;
+    trial_.zs.lower = now_.zs.lower + alpha_dual_ * step_.zs.lower;
+    trial_.zs.upper = now_.zs.upper + alpha_dual_ * step_.zs.upper;
+    barrier_.x_box().safeguard(trial_.x.array(), mu_.value(), trial_.zx);
+    barrier_.s_box().safeguard(trial_.s.array(), mu_.value(), trial_.zs);
+    std::swap(now_, trial_);
+    barrier_.linearise(now_);
+    ++iterations_;
+  }
+
+  /// No acceptable step is left: good enough, or a failure.
+  Status no_progress() const {
+    return error_.max_scaled() <= kAcceptableFactor * tolerance() ? Status::acceptable : Status::numerical_failure;
+  }
+
+  Result finish(PointOf<P>& point, Status status) {
+    point.x = now_.x;
+    point.lambda = now_.lambda;
+    const auto& box = barrier_.x_box();
+    // a fixed variable has the multiplier that balances its stationarity
+    point.z = (box.free_mask() > 0).select(now_.zx.upper - now_.zx.lower, -barrier_.stationarity().array());
+    Result result;
+    result.status = status;
+    result.iterations = iterations_;
+    result.objective = double(now_.objective);
+    result.residual = kkt_residual(point, barrier_.bounds(), barrier_.gradient(), now_.constraints, barrier_.jacobian());
+    result.elapsed = elapsed();
+    return result;
+  }
+
+  Iteration describe() const {
+    return {iterations_, double(now_.objective), double(error_.primal), double(error_.stationarity), double(error_.complementarity),
+            double(mu_.value()), double(alpha_primal_), double(alpha_dual_), double(system_.regularization()), line_search_.trials()};
+  }
+
+  Scalar tolerance() const { return Scalar(options_.tolerance); }
+  double elapsed() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
+
+  static constexpr Scalar kColdPush = Scalar(1e-2);    // kappa_1 = kappa_2 of [WB06, sec. 3.6]
+  static constexpr Scalar kWarmPush = Scalar(1e-6);
+  static constexpr Scalar kDivergence = Scalar(1e20);
+  static constexpr Scalar kAcceptableFactor = 100;
+
+  const P& problem_;
+  Options options_;
+  BarrierProblem<P> barrier_;
+  NewtonSystem<P, Kkt> system_;
+  FilterLineSearch<P, Kkt> line_search_;
+  BarrierParameter<Scalar> mu_;
+  Iterate<P> now_, trial_;
+  Step<P> step_;
+  BarrierError<Scalar> error_;
+  Scalar alpha_primal_ = 0, alpha_dual_ = 0;
+  typename Clock::time_point begin_;
+  int iterations_ = 0, tiny_steps_ = 0;
+  bool stopped_ = false;
+};
+
+}  // namespace tenon

@@ -1,0 +1,114 @@
+// The Newton system of the barrier problem: assembled, factored with the right inertia, solved for a step.
+//
+//     [ H + Sigma_x + delta_w I    J'                          ] [ dx      ]       [ r_x             ]
+//     [ J                          -(1/Sigma_s + D + delta_c)  ] [ dlambda ]  =  - [ r_c + r_s/Sigma_s ]        newton_kkt.md (7)
+//
+// with r_x = grad f + J' lambda - mu/(x - l) + mu/(u - x), r_s = -lambda - mu/(s - l) + mu/(u - s), ds = (dlambda - r_s)/Sigma_s.
+#pragma once
+
+#include "tenon/solvers/newton_kkt/barrier_problem.hpp"
+#include "tenon/solvers/newton_kkt/inertia.hpp"
+#include "tenon/solvers/newton_kkt/inertia_correction.hpp"
+#include "tenon/solvers/newton_kkt/kkt_of.hpp"
+
+namespace tenon {
+
+template <NonlinearProgram P, class Kkt>
+class NewtonSystem {
+ public:
+  using Scalar = typename P::Scalar;
+  using VectorN = VectorNOf<P>;
+  using VectorM = VectorMOf<P>;
+
+  explicit NewtonSystem(const P& problem) : kkt_(make_kkt<Kkt>(problem)) {
+    const int n = problem.num_variables(), m = problem.num_constraints();
+    for (VectorN* v : {&sigma_x_, &r_x_, &rhs_x_}) v->setZero(n);
+    for (VectorM* v : {&give_s_, &d_, &r_s_, &r_c_, &rhs_c_}) v->setZero(m);
+  }
+
+  void reset() { correction_.reset(); }
+  Scalar regularization() const { return delta_w_; }
+
+  /// Factors K at `at`, correcting the Hessian until the inertia is (n, m, 0). False where no correction helps.
+  bool factor(const BarrierProblem<P>& barrier, const Iterate<P>& at, Scalar mu) {
+    if (attempt(barrier, at, 0, 0)) return true;
+    // a singular K points at dependent rows: soften them a little before touching the Hessian
+    const Scalar delta_c = inertia_.zero > 0 ? Scalar(1e-8) * std::sqrt(std::sqrt(std::max(mu, Scalar(1e-12)))) : Scalar(0);
+    if (delta_c > 0 && attempt(barrier, at, 0, delta_c)) return true;
+    for (Scalar delta_w = correction_.first(); std::isfinite(delta_w); delta_w = correction_.delta()) {
+      if (attempt(barrier, at, delta_w, delta_c)) {
+        correction_.accepted(delta_w);
+        return true;
+      }
+      if (!correction_.next()) return false;
+    }
+    return false;
+  }
+
+  /// The Newton step of the barrier problem of this mu, from the last factorisation.
+  void step(const BarrierProblem<P>& barrier, const Iterate<P>& at, Scalar mu, Step<P>& step) {
+    residuals(barrier, at, mu);
+    r_c_ = barrier.row_residual(at);
+    solve(barrier, at, mu, step);
+  }
+
+  /// The same with another row residual: a second-order correction.  [WB06, eq. 26]
+  void corrected_step(const BarrierProblem<P>& barrier, const Iterate<P>& at, Scalar mu, const VectorM& row_residual, Step<P>& step) {
+    r_c_ = row_residual;
+    solve(barrier, at, mu, step);
+  }
+
+  /// Least-squares multipliers of a cold start: H = I, every row's slack with unit stiffness.  [WB06, sec. 3.6]
+  bool least_squares_multipliers(BarrierProblem<P>& barrier, Iterate<P>& at) {
+    set_zero(barrier.hessian());
+    sigma_x_ = (barrier.x_box().fixed_stiffness() + 1).matrix();
+    d_ = barrier.s_box().free_mask().matrix();
+    const Inertia inertia = kkt_.factor(barrier.hessian(), barrier.jacobian(), sigma_x_, d_);
+    if (inertia.zero > 0) return false;
+    rhs_x_ = -(barrier.x_box().free_mask() * (barrier.gradient().array() + at.zx.upper - at.zx.lower)).matrix();
+    rhs_c_ = -(barrier.s_box().free_mask() * (at.zs.upper - at.zs.lower)).matrix();
+    kkt_.solve(rhs_x_, rhs_c_, r_x_, at.lambda);  // r_x_ takes the primal part, which nobody needs
+    constexpr Scalar kLargest = 1000;
+    return at.lambda.allFinite() && (at.lambda.size() == 0 || at.lambda.template lpNorm<Eigen::Infinity>() <= kLargest);
+  }
+
+ private:
+  bool attempt(const BarrierProblem<P>& barrier, const Iterate<P>& at, Scalar delta_w, Scalar delta_c) {
+    delta_w_ = delta_w;
+    barrier.x_box().stiffness(at.x.array(), at.zx, sigma_x_.array());
+    if (delta_w > 0) sigma_x_.array() += delta_w;
+    // 1/Sigma_s: 0 for the fixed slack of an equality, at most 1e30 for a row without bounds
+    barrier.s_box().stiffness(at.s.array(), at.zs, give_s_.array());
+    give_s_.array() = barrier.s_box().free_mask() / (give_s_.array() + delta_w).max(Scalar(1) / Scalar(kFixedStiffness));
+    d_ = give_s_ + barrier.bounds().compliance;
+    if (delta_c > 0) d_.array() += delta_c;
+    inertia_ = kkt_.factor(barrier.hessian(), barrier.jacobian(), sigma_x_, d_);
+    return inertia_.zero == 0 && inertia_.negative == barrier.m();
+  }
+
+  void residuals(const BarrierProblem<P>& barrier, const Iterate<P>& at, Scalar mu) {
+    r_x_ = barrier.stationarity();
+    barrier.x_box().add_barrier_gradient(at.x.array(), mu, r_x_.array());
+    if (barrier.x_box().any_fixed()) r_x_.array() *= barrier.x_box().free_mask();
+    r_s_ = -at.lambda;
+    barrier.s_box().add_barrier_gradient(at.s.array(), mu, r_s_.array());
+  }
+
+  void solve(const BarrierProblem<P>& barrier, const Iterate<P>& at, Scalar mu, Step<P>& step) {
+    rhs_x_ = -r_x_;
+    rhs_c_ = -(r_c_ + give_s_.cwiseProduct(r_s_));
+    kkt_.solve(rhs_x_, rhs_c_, step.x, step.lambda);
+    step.s = give_s_.cwiseProduct(step.lambda - r_s_);
+    barrier.x_box().multiplier_step(at.x.array(), at.zx, step.x.array(), mu, step.zx);
+    barrier.s_box().multiplier_step(at.s.array(), at.zs, step.s.array(), mu, step.zs);
+  }
+
+  Kkt kkt_;
+  InertiaCorrection<Scalar> correction_;
+  Inertia inertia_;
+  Scalar delta_w_ = 0;
+  VectorN sigma_x_, r_x_, rhs_x_;
+  VectorM give_s_, d_, r_s_, r_c_, rhs_c_;
+};
+
+}  // namespace tenon
