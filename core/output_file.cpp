@@ -17,7 +17,10 @@ namespace {
 
 constexpr std::size_t kBufferBytes = 1 << 16;
 
+bool is_standard_output(const std::string& path) { return path == "-"; }
+
 bool is_written_directly(const std::string& path) {
+  if (is_standard_output(path) || path.starts_with("/dev/")) return true;
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
@@ -26,6 +29,7 @@ bool is_written_directly(const std::string& path) {
 }  // namespace
 
 void check_output_path(const std::string& path) {
+  if (is_standard_output(path)) return;
   std::error_code error;
   const std::filesystem::path target(path);
   const std::filesystem::path folder = target.has_parent_path() ? target.parent_path() : ".";
@@ -39,7 +43,8 @@ void check_output_path(const std::string& path) {
 OutputFile::OutputFile(std::string path) : path_(std::move(path)), partial_path_(path_) {
   check_output_path(path_);
   if (!is_written_directly(path_)) partial_path_ += ".partial";
-  descriptor_ = ::open(partial_path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  descriptor_ = is_standard_output(path_) ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0)
+                                          : ::open(partial_path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail(errno);
   buffer_.reserve(2 * kBufferBytes);
 }
@@ -67,7 +72,8 @@ void OutputFile::flush() {
       const int error = count < 0 ? errno : ENOSPC;
       // Part of a record may have gone out: cut the file back to the last complete one.
       const std::size_t end_of_record = done == 0 ? 0 : buffer_.rfind('\n', done - 1) + 1;  // npos + 1 is 0
-      if (::ftruncate(descriptor_, written_ + static_cast<long>(end_of_record)) != 0) { /* a pipe: nothing to cut */ }
+      const bool is_cut = !is_standard_output(path_) && ::ftruncate(descriptor_, written_ + static_cast<long>(end_of_record)) == 0;
+      static_cast<void>(is_cut);  // a pipe or a device has nothing to cut
       buffer_.clear();
       fail(error);
     }
@@ -89,7 +95,7 @@ void OutputFile::finish() {
 void OutputFile::fail(int error) {
   if (descriptor_ >= 0) ::close(descriptor_);
   descriptor_ = -1;
-  throw OutputError(path_ + ": cannot be written: " + std::strerror(error));
+  throw OutputError((is_standard_output(path_) ? "standard output" : path_) + ": cannot be written: " + std::strerror(error));
 }
 
 }  // namespace tenon

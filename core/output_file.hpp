@@ -1,7 +1,7 @@
 // OutputFile: a file that is there as a whole or not at all.
 //
 // Records go to FILE.partial, which takes the name FILE on finish(). Whatever ends the program early, FILE.partial holds complete records
-// only, and an older FILE is as it was. A target that is no regular file (a pipe, /dev/stdout) is written directly.
+// only, and an older FILE is as it was. A target that is no regular file (a pipe, a device, "-" for standard output) is written directly.
 #pragma once
 
 #include <stdexcept>

@@ -186,6 +186,10 @@ void LinearAllocation::stick_servo(int i, double angle) {
   factor();
 }
 
+bool LinearAllocation::has_linear_thrust() const {
+  return std::all_of(arms_, arms_ + num_rotors_, [](const Arm& arm) { return arm.linear_thrust; });
+}
+
 std::vector<std::string> LinearAllocation::unreachable_directions() const {
   static constexpr const char* kNames[6] = {"force along body x",  "force along body y",  "force along body z",
                                             "torque about body x", "torque about body y", "torque about body z"};

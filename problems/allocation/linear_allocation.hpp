@@ -47,6 +47,9 @@ class LinearAllocation {
   /// One text for each lost direction, such as "force along body x"; a mixed one as "0.8 Fx + 0.6 My".
   std::vector<std::string> unreachable_directions() const;
 
+  /// Whether every thrust is proportional to its throttle, so that effort_lower_bound() is a bound.
+  bool has_linear_thrust() const;
+
   int num_rotors() const { return num_rotors_; }
 
  private:
