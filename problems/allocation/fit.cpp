@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "tenon/core/eigen.hpp"
-#include "tenon/problems/allocation/polynomial.hpp"
+#include "tenon/problems/allocation/throttle_map.hpp"
 
 #include <Eigen/QR>
 

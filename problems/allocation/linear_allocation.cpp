@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tenon/problems/allocation/polynomial.hpp"
+#include "tenon/problems/allocation/throttle_map.hpp"
 
 namespace tenon {
 
@@ -29,10 +29,10 @@ Wrench unit_wrench(const Eigen::Vector3d& r, const Eigen::Vector3d& d, double si
 double invert(const std::vector<double>& thrust, double f, double lower, double upper) {
   double u = lower + (upper - lower) / 2;
   for (int k = 0; k < 100; ++k) {
-    const double error = polynomial(thrust, u) - f;
+    const double error = throttle_map(thrust, u) - f;
     if (error == 0) return u;
     (error < 0 ? lower : upper) = u;
-    double next = u - error / polynomial_slope(thrust, u);
+    double next = u - error / throttle_map_slope(thrust, u);
     if (!(next > lower && next < upper)) next = lower + (upper - lower) / 2;
     if (std::abs(next - u) <= 1e-16 * std::max(1.0, std::abs(u))) return next;
     u = next;
@@ -66,8 +66,8 @@ LinearAllocation::LinearAllocation(const Vehicle& vehicle)
     const double lowest = rotor.throttle_lower + 0.1 * (rotor.throttle_upper - rotor.throttle_lower);
     double hover = std::clamp(throttle_of(arm, hover_thrust), lowest, rotor.throttle_upper);
     if (std::abs(hover) < 1e-3) hover = rotor.throttle_upper;
-    arm.kappa = arm.linear_thrust ? rotor.thrust[1] : polynomial(rotor.thrust, hover) / hover;
-    arm.torque_ratio = polynomial(rotor.torque, hover) / polynomial(rotor.thrust, hover);
+    arm.kappa = arm.linear_thrust ? rotor.thrust[1] : throttle_map(rotor.thrust, hover) / hover;
+    arm.torque_ratio = throttle_map(rotor.torque, hover) / throttle_map(rotor.thrust, hover);
   }
   factor();
 }
@@ -148,7 +148,7 @@ void LinearAllocation::solve(const Wrench& wrench, ConstVectorRef previous_angle
 double LinearAllocation::throttle_of(const Arm& arm, double thrust) const {
   if (arm.linear_thrust) return thrust / arm.thrust[1];
   const double lower = arm.throttle_lower, upper = arm.throttle_upper;
-  const double weakest = polynomial(arm.thrust, lower), strongest = polynomial(arm.thrust, upper);
+  const double weakest = throttle_map(arm.thrust, lower), strongest = throttle_map(arm.thrust, upper);
   const double secant = (strongest - weakest) / (upper - lower);
   if (thrust >= strongest) return upper + (thrust - strongest) / secant;
   if (thrust <= weakest) return lower + (thrust - weakest) / secant;
@@ -167,9 +167,9 @@ Wrench LinearAllocation::wrench(ConstVectorRef u, ConstVectorRef a) const {
     const Arm& arm = arms_[i];
     if (arm.kind == Kind::failed) continue;
     const Eigen::Vector3d n = arm.along * arm.axis + std::cos(a[i]) * arm.zero + std::sin(a[i]) * arm.across;
-    const Eigen::Vector3d force = polynomial(arm.thrust, u[i]) * n;
+    const Eigen::Vector3d force = throttle_map(arm.thrust, u[i]) * n;
     sum.head<3>() += force;
-    sum.tail<3>() += arm.position.cross(force) + arm.spin * polynomial(arm.torque, u[i]) * n;
+    sum.tail<3>() += arm.position.cross(force) + arm.spin * throttle_map(arm.torque, u[i]) * n;
   }
   return sum;
 }

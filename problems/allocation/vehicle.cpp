@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tenon/problems/allocation/polynomial.hpp"
+#include "tenon/problems/allocation/throttle_map.hpp"
 #include "tenon/problems/allocation/vehicle_error.hpp"
 
 namespace tenon {
@@ -57,7 +57,7 @@ void normalise_rotor(Rotor& rotor, int i, std::vector<std::string>& notes) {
   if (std::isnan(rotor.fails_at)) throw VehicleError(i, "fails_at", "fails_at is not a number", "a time");
   if (std::isnan(rotor.servo_sticks_at)) throw VehicleError(i, "servo_sticks_at", "servo_sticks_at is not a number", "a time");
 
-  const double weakest = polynomial(rotor.thrust, rotor.throttle_lower), strongest = polynomial(rotor.thrust, rotor.throttle_upper);
+  const double weakest = throttle_map(rotor.thrust, rotor.throttle_lower), strongest = throttle_map(rotor.thrust, rotor.throttle_upper);
   if (!(strongest > weakest)) {
     throw VehicleError(i, "thrust", fmt::format("thrust is {:.6g} N at the lowest throttle and {:.6g} N at the highest", weakest, strongest),
                        "a thrust that rises");

@@ -5,13 +5,13 @@
 
 namespace tenon {
 
-inline double polynomial(std::span<const double> coefficients, double u) {
+inline double throttle_map(std::span<const double> coefficients, double u) {
   double value = 0;
   for (std::size_t k = coefficients.size(); k-- > 0;) value = value * u + coefficients[k];
   return value;
 }
 
-inline double polynomial_slope(std::span<const double> coefficients, double u) {
+inline double throttle_map_slope(std::span<const double> coefficients, double u) {
   double slope = 0;
   for (std::size_t k = coefficients.size(); k-- > 1;) slope = slope * u + static_cast<double>(k) * coefficients[k];
   return slope;
@@ -20,9 +20,9 @@ inline double polynomial_slope(std::span<const double> coefficients, double u) {
 /// False where the map falls somewhere on [lower, upper], looked at in 1000 steps.
 inline bool rises(std::span<const double> coefficients, double lower, double upper) {
   constexpr int kSteps = 1000;
-  double last = polynomial(coefficients, lower);
+  double last = throttle_map(coefficients, lower);
   for (int k = 1; k <= kSteps; ++k) {
-    const double value = polynomial(coefficients, lower + (upper - lower) * k / kSteps);
+    const double value = throttle_map(coefficients, lower + (upper - lower) * k / kSteps);
     if (value < last) return false;
     last = value;
   }
