@@ -17,6 +17,9 @@ enum class Status {
   numerical_failure,  // no step could be computed or accepted
 };
 
+/// How much coarser than the tolerance an acceptable residual may be. 100 is also Ipopt's: tol 1e-8, acceptable_tol 1e-6.
+inline constexpr double kAcceptableFactor = 100;
+
 /// The name of a status as it stands in every file.
 constexpr std::string_view to_string(Status status) {
   switch (status) {

@@ -1,6 +1,7 @@
 # How a folder becomes a target, and the targets a package.
 #
 #   tenon_library(core SOURCES a.cpp ... PUBLIC Eigen ... PRIVATE fmt::fmt)    makes tenon::core from one folder
+#   tenon_embed(problems FUNCTION f FILES a.toml ...)                         f() in tenon::problems gives these files, as text
 #   tenon_install_package()                                                  installs targets, headers, scenarios and find_package(tenon)
 
 find_package(Eigen3 3.4 QUIET NO_MODULE)
@@ -38,6 +39,21 @@ function(tenon_library name)
     $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(tenon-${name} PUBLIC ${LIB_PUBLIC} PRIVATE ${LIB_PRIVATE} $<BUILD_INTERFACE:tenon-flags>)
   install(TARGETS tenon-${name} EXPORT tenonTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+endfunction()
+
+# The text of files as a function `std::vector<tenon::EmbeddedFile> tenon::f()` of a folder's target, so that a binary needs no folder of data.
+function(tenon_embed name)
+  cmake_parse_arguments(EMBED "" "FUNCTION" "FILES" ${ARGN})
+  set(entries "")
+  foreach(file ${EMBED_FILES})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${file})
+    file(READ ${file} text)
+    get_filename_component(stem ${file} NAME_WE)
+    string(APPEND entries "    {\"${stem}\", R\"EMBEDDED(${text})EMBEDDED\"},\n")
+  endforeach()
+  set(EMBED_ENTRIES ${entries})
+  configure_file(${PROJECT_SOURCE_DIR}/core/cmake/embedded.cpp.in ${CMAKE_CURRENT_BINARY_DIR}/${EMBED_FUNCTION}.cpp @ONLY)
+  target_sources(tenon-${name} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/${EMBED_FUNCTION}.cpp)
 endfunction()
 
 function(tenon_install_package)

@@ -1,0 +1,36 @@
+// What stands on the command line after the verb.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tenon/core/options.hpp"
+
+namespace tenon {
+
+struct Arguments {
+  std::vector<std::string> names;  // the words that are no flags: problems, a vehicle, a file
+  std::string wrenches, output, trace;
+  std::optional<std::string> solver, solvers, initial;
+  std::vector<std::string> set;
+  std::optional<double> tolerance, time_limit;
+  std::optional<int> max_iterations;
+  std::uint64_t seed = 1;
+  int rows = 0;
+  int degree = 2;
+  bool constant = false, cold = false, json = false, quiet = false, verbose = false;
+
+  /// The solver options that were given; the others as they are by default.
+  Options options() const {
+    Options options;
+    if (tolerance) options.tolerance = *tolerance;
+    if (max_iterations) options.max_iterations = *max_iterations;
+    if (time_limit) options.time_limit = *time_limit;
+    validate(options);
+    return options;
+  }
+};
+
+}  // namespace tenon

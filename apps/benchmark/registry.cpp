@@ -1,0 +1,13 @@
+#include "tenon/apps/benchmark/benchmark.hpp"
+
+namespace tenon {
+
+void add_linear_allocation(std::vector<Benchmark>& rows);
+
+std::vector<Benchmark> benchmarks() {
+  std::vector<Benchmark> rows;
+  add_linear_allocation(rows);
+  return rows;
+}
+
+}  // namespace tenon

@@ -1,0 +1,121 @@
+#include "tenon/apps/command_line.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <stdexcept>
+
+#include "tenon/core/nearest_name.hpp"
+
+namespace tenon {
+
+namespace {
+
+/// Every flag, by name: how it is added to a verb.
+const std::map<std::string, std::function<CLI::Option*(CLI::App&, Arguments&)>>& flags() {
+  using App = CLI::App;
+  using Args = Arguments;
+  static const CLI::Validator finite([](std::string& text) { return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : "not finite"; },
+                                     "");
+  static const CLI::Range count(0, 1 << 30);
+  static const std::map<std::string, std::function<CLI::Option*(App&, Args&)>> table{
+      {"wrenches", [](App& a, Args& v) { return a.add_option("--wrenches", v.wrenches, "the wrench log")->type_name("FILE.csv")->required(); }},
+      {"output", [](App& a, Args& v) { return a.add_option("--output", v.output, "where the record goes")->type_name("FILE.csv"); }},
+      {"trace", [](App& a, Args& v) { return a.add_option("--trace", v.trace, "one line per solver iteration")->type_name("FILE.jsonl"); }},
+      {"solver", [](App& a, Args& v) { return a.add_option("--solver", v.solver, "the back end")->type_name("NAME"); }},
+      {"solvers", [](App& a, Args& v) { return a.add_option("--solvers", v.solvers, "the back ends to compare")->type_name("A,B,C"); }},
+      {"set",
+       [](App& a, Args& v) {
+         return a.add_option("--set", v.set, "override a value of the TOML; may stand several times")->type_name("KEY.PATH=VALUE")->allow_extra_args(false);
+       }},
+      {"initial",
+       [](App& a, Args& v) { return a.add_option("--initial", v.initial, "arm angles before the first row, rad")->type_name("A1,...,AN"); }},
+      {"cold", [](App& a, Args& v) { return a.add_flag("--cold", v.cold, "every row on its own: no previous angles, no rate"); }},
+      {"tolerance",
+       [](App& a, Args& v) { return a.add_option("--tolerance", v.tolerance, "where a solve ends")->type_name("X")->check(finite); }},
+      {"max-iterations",
+       [](App& a, Args& v) { return a.add_option("--max-iterations", v.max_iterations, "where a solve gives up")->type_name("N")->check(count); }},
+      {"time-limit",
+       [](App& a, Args& v) { return a.add_option("--time-limit", v.time_limit, "where a solve gives up, s")->type_name("S")->check(finite); }},
+      {"seed", [](App& a, Args& v) { return a.add_option("--seed", v.seed, "of random numbers")->type_name("N")->capture_default_str(); }},
+      {"rows", [](App& a, Args& v) { return a.add_option("--rows", v.rows, "random rows of a vehicle")->type_name("N")->check(count); }},
+      {"degree", [](App& a, Args& v) { return a.add_option("--degree", v.degree, "of the polynomials")->type_name("N")->capture_default_str(); }},
+      {"constant", [](App& a, Args& v) { return a.add_flag("--constant", v.constant, "fit a constant term as well"); }},
+      {"json", [](App& a, Args& v) { return a.add_flag("--json", v.json, "the result as one JSON object on stdout"); }},
+      {"quiet", [](App& a, Args& v) { return a.add_flag("--quiet", v.quiet, "no log, no progress bar, no summary"); }},
+      {"verbose", [](App& a, Args& v) { return a.add_flag("--verbose", v.verbose, "the iteration table, on stderr"); }},
+  };
+  return table;
+}
+
+void add_verb(CLI::App& app, const Verb& verb, Arguments& arguments) {
+  CLI::App* command = app.add_subcommand(verb.name, verb.description);
+  if (verb.max_operands != 0) {
+    CLI::Option* operands = command->add_option("names", arguments.names, "")->type_name(verb.operands);
+    operands->expected(verb.min_operands, verb.max_operands < 0 ? 1 << 20 : verb.max_operands);
+    if (verb.min_operands > 0) operands->required();
+  }
+  for (const std::string& flag : verb.flags) flags().at(flag)(*command, arguments);
+}
+
+const Verb* find_verb(const std::string& name) {
+  for (const Verb& verb : verbs()) {
+    if (verb.name == name) return &verb;
+  }
+  return nullptr;
+}
+
+[[noreturn]] void reject_verb(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Verb& verb : verbs()) names.push_back(verb.name);
+  throw std::invalid_argument(
+      fmt::format("unknown verb '{}', the nearest is '{}' (expected one of {})", name, nearest_name(name, names), fmt::join(names, ", ")));
+}
+
+/// A word that no flag or operand took.
+[[noreturn]] void reject_extra(const Verb& verb, const std::string& word) {
+  if (!word.starts_with("-")) {
+    throw std::invalid_argument(
+        fmt::format("{}: '{}' is one word too many (expected {})", verb.name, word, verb.operands.empty() ? "none" : verb.operands));
+  }
+  std::vector<std::string> names;
+  for (const std::string& flag : verb.flags) names.push_back("--" + flag);
+  names.emplace_back("--help");
+  const std::string name = word.substr(0, word.find('='));
+  throw std::invalid_argument(fmt::format("{}: unknown flag '{}', the nearest is '{}' (expected one of {})", verb.name, name,
+                                          nearest_name(name, names), fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+std::optional<Invocation> read_command_line(int argc, char** argv) {
+  CLI::App app("Nonlinear optimisation and model-predictive control for wrench allocation and contact-aware assembly.", "tenon");
+  app.set_version_flag("--version", "tenon " TENON_VERSION);
+  app.require_subcommand(1);
+  Invocation invocation;
+  for (const Verb& verb : verbs()) add_verb(app, verb, invocation.arguments);
+
+  const std::string first = argc > 1 ? argv[1] : "";
+  if (first.empty()) throw std::invalid_argument("no verb (expected tenon VERB ..., see tenon --help)");
+  invocation.verb = find_verb(first);
+  if (invocation.verb == nullptr && !first.starts_with("-")) reject_verb(first);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    app.exit(asked);
+    return std::nullopt;
+  } catch (const CLI::ExtrasError&) {
+    const std::vector<std::string> extras = app.remaining(true);
+    if (invocation.verb == nullptr) throw std::invalid_argument("unknown flag '" + first + "' (expected tenon VERB ..., see tenon --help)");
+    reject_extra(*invocation.verb, extras.empty() ? "" : extras.front());
+  } catch (const CLI::ParseError& error) {
+    throw std::invalid_argument((invocation.verb == nullptr ? "" : invocation.verb->name + ": ") + error.what());
+  }
+  return invocation;
+}
+
+}  // namespace tenon

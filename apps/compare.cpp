@@ -1,0 +1,117 @@
+// tenon compare PROBLEM...: the same problem on every back end, the same start and tolerance, judged by one ruler, the solve alone timed.
+#include "tenon/apps/compare.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "tenon/apps/comma_list.hpp"
+#include "tenon/apps/interrupt.hpp"
+#include "tenon/apps/progress.hpp"
+#include "tenon/apps/result_json.hpp"
+#include "tenon/apps/table.hpp"
+#include "tenon/apps/verb.hpp"
+#include "tenon/core/nearest_name.hpp"
+#include "tenon/problems/allocation/vehicle_file.hpp"
+#include "tenon/problems/catalogue.hpp"
+
+namespace tenon {
+
+namespace {
+
+constexpr int kTimedRuns = 5;
+
+bool is_vehicle(const std::string& name) {
+  const std::vector<std::string> vehicles = builtin_vehicles();
+  return std::count(vehicles.begin(), vehicles.end(), name) > 0 || name.ends_with(".toml");
+}
+
+std::vector<std::string> table_row(const std::string& problem, const Measurement& m) {
+  if (!m.refusal.empty()) return {problem, m.solver, "not taken", "-", "-", "-", "-", "-"};
+  const EvaluationCounts& c = m.counts;
+  return {problem,
+          m.solver,
+          std::string(to_string(m.result.status)),
+          fmt::format("{:.9g}", m.result.objective),
+          fmt::format("{:.1e}", m.result.residual.max()),
+          fmt::format("{}", m.result.iterations),
+          fmt::format("{}/{}/{}/{}/{}", c.objective, c.gradient, c.constraints, c.jacobian, c.hessian),
+          duration_text(m.time)};
+}
+
+}  // namespace
+
+std::vector<SolverDescription> chosen_solvers(const Arguments& arguments) {
+  const std::vector<SolverDescription> known = list_solvers();
+  std::vector<SolverDescription> chosen;
+  if (!arguments.solvers) {
+    std::copy_if(known.begin(), known.end(), std::back_inserter(chosen), [](const SolverDescription& s) { return s.available; });
+    return chosen;
+  }
+  std::vector<std::string> names;
+  for (const SolverDescription& s : known) names.push_back(s.name);
+  for (const std::string& name : split_list(*arguments.solvers)) {
+    const auto at = std::find_if(known.begin(), known.end(), [&](const SolverDescription& s) { return s.name == name; });
+    if (at == known.end()) {
+      throw std::invalid_argument(fmt::format("unknown solver '{}', the nearest is '{}' (expected one of {})", name, nearest_name(name, names),
+                                              fmt::join(names, ", ")));
+    }
+    if (!at->available) throw std::invalid_argument(fmt::format("solver '{}' is not available: its library was absent when this was built", name));
+    chosen.push_back(*at);
+  }
+  return chosen;
+}
+
+int run_compare(const Arguments& arguments) {
+  const Options options = arguments.options();
+  const std::vector<SolverDescription> solvers = chosen_solvers(arguments);
+  if (std::any_of(arguments.names.begin(), arguments.names.end(), is_vehicle)) {
+    if (arguments.names.size() > 1) throw std::invalid_argument("compare: a vehicle stands alone (expected one vehicle, or problems)");
+    return compare_vehicle(arguments.names.front(), arguments);
+  }
+  for (const std::string& name : arguments.names) static_cast<void>(find_problem(name));
+
+  Table table({"problem", "solver", "status", "objective", "residual", "iterations", "evaluations", "time"});
+  Json rows = Json::array();
+  std::vector<std::string> refusals;
+  {
+    Progress progress("compare", std::ssize(arguments.names) * std::ssize(solvers), arguments.quiet);
+    long done = 0;
+    for (const std::string& name : arguments.names) {
+      const CatalogueEntry& entry = find_problem(name);
+      const std::unique_ptr<Nlp> problem = entry.make();
+      for (const SolverDescription& solver : solvers) {
+        if (interrupted()) return kInterrupted;
+        const Measurement m = measure(*problem, solver.name, options, suggested_start(*problem), kTimedRuns);
+        table.add(table_row(name, m));
+        if (!m.refusal.empty()) {
+          refusals.push_back(fmt::format("{} on {}: {}", name, solver.name, m.refusal));
+          rows.push(Json::object().set("problem", name).set("solver", solver.name).set("refusal", m.refusal));
+        } else {
+          Json row = result_json(*problem, m, options.tolerance);
+          if (entry.published_objective) row.set("published_objective", *entry.published_objective);
+          rows.push(row);
+        }
+        progress.update(++done);
+      }
+    }
+  }
+  if (arguments.json) {
+    Json used = Json::array();
+    for (const SolverDescription& s : solvers) {
+      used.push(Json::object().set("name", s.name).set("description", s.description).set("options", s.options));
+    }
+    print(Json::object().set("schema", 1).set("tolerance", options.tolerance).set("timed_runs", kTimedRuns).set("solvers", used).set("results", rows));
+    return kFinished;
+  }
+  fmt::print("{}\n", table.text());
+  fmt::print("evaluations: objective/gradient/constraints/Jacobian/Hessian of one solve; residual: the largest of the unscaled KKT residual\n");
+  fmt::print("time: the solve alone, median of {}; tolerance {} for all, printing off\n", kTimedRuns, options.tolerance);
+  for (const SolverDescription& s : solvers) fmt::print("{}: {}; {}\n", s.name, s.description, s.options.empty() ? "no further options" : s.options);
+  for (const std::string& refusal : refusals) fmt::print("{}\n", refusal);
+  return kFinished;
+}
+
+}  // namespace tenon

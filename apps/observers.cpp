@@ -1,0 +1,57 @@
+#include "tenon/apps/observers.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "tenon/apps/interrupt.hpp"
+
+namespace tenon {
+
+namespace {
+
+std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
+
+}  // namespace
+
+std::string trace_line(const Iteration& it) {
+  return fmt::format(
+      "{{\"index\":{},\"objective\":{},\"primal\":{},\"dual\":{},\"complementarity\":{},\"mu\":{},\"alpha_primal\":{},\"alpha_dual\":{},"
+      "\"regularization\":{},\"trials\":{}}}\n",
+      it.index, number(it.objective), number(it.primal), number(it.dual), number(it.complementarity), number(it.mu), number(it.alpha_primal),
+      number(it.alpha_dual), number(it.regularization), it.trials);
+}
+
+std::string table_line(const Iteration& it) {
+  std::string text;
+  if (it.index == 0) {
+    text = fmt::format("{:>5}  {:>16}  {:>8}  {:>8}  {:>8}  {:>8}  {:>7}  {:>7}  {:>8}  {:>6}\n", "iter", "objective", "primal", "dual", "compl",
+                       "mu", "alpha_p", "alpha_d", "reg", "trials");
+  }
+  return text + fmt::format("{:>5}  {:>16.9e}  {:>8.2e}  {:>8.2e}  {:>8.2e}  {:>8.2e}  {:>7.4f}  {:>7.4f}  {:>8.2e}  {:>6}\n", it.index,
+                            it.objective, it.primal, it.dual, it.complementarity, it.mu, it.alpha_primal, it.alpha_dual, it.regularization,
+                            it.trials);
+}
+
+Observers::Observers(const Arguments& arguments) : verbose_(arguments.verbose) {
+  if (!arguments.trace.empty()) trace_ = std::make_unique<OutputFile>(arguments.trace);
+}
+
+std::function<bool(const Iteration&)> Observers::callback() {
+  return [this](const Iteration& iteration) {
+    if (verbose_) fmt::print(stderr, "{}", table_line(iteration));
+    try {
+      if (trace_) trace_->append(trace_line(iteration));
+    } catch (const OutputError&) {  // must not cross a library's own loop
+      failure_ = std::current_exception();
+    }
+    return !interrupted() && !failure_;
+  };
+}
+
+void Observers::finish() {
+  if (failure_) std::rethrow_exception(failure_);
+  if (trace_) trace_->finish();
+}
+
+}  // namespace tenon

@@ -1,0 +1,39 @@
+// Who looks at the iterations of a solve: the table of --verbose, the record of --trace, and Ctrl-C.
+#pragma once
+
+#include <exception>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "tenon/apps/arguments.hpp"
+#include "tenon/core/iteration.hpp"
+#include "tenon/core/output_file.hpp"
+
+namespace tenon {
+
+/// One JSON object and a newline: a line of a trace.
+std::string trace_line(const Iteration& iteration);
+
+/// One line of the iteration table; index 0 brings the header.
+std::string table_line(const Iteration& iteration);
+
+class Observers {
+ public:
+  /// Opens the trace where one is asked for, so that a bad path shows before any work.
+  explicit Observers(const Arguments& arguments);
+
+  /// Whether --verbose or --trace asked for anything.
+  bool wanted() const { return verbose_ || trace_ != nullptr; }
+  /// For Options::on_iteration; refers to this. Asks the solver to stop once the user interrupts.
+  std::function<bool(const Iteration&)> callback();
+  /// Closes the trace. Throws OutputError.
+  void finish();
+
+ private:
+  bool verbose_;
+  std::unique_ptr<OutputFile> trace_;
+  std::exception_ptr failure_;  // of writing the trace; thrown by finish()
+};
+
+}  // namespace tenon

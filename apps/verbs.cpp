@@ -1,0 +1,44 @@
+#include "tenon/apps/verb.hpp"
+
+namespace tenon {
+
+int run_allocate(const Arguments&);
+int run_bench(const Arguments&);
+int run_check(const Arguments&);
+int run_compare(const Arguments&);
+int run_fit(const Arguments&);
+int run_list(const Arguments&);
+int run_solve(const Arguments&);
+
+const std::vector<Verb>& verbs() {
+  static const std::vector<Verb> table{
+      {"list", "what tenon knows by name", "[problems|vehicles|missions|scenes|robots|solvers]", 0, 1, {"json"}, &run_list},
+      {"allocate",
+       "a wrench log becomes throttles and arm angles, row by row",
+       "VEHICLE",
+       1,
+       1,
+       {"wrenches", "output", "solver", "set", "cold", "initial", "tolerance", "max-iterations", "time-limit", "trace", "json", "quiet", "verbose"},
+       &run_allocate},
+      {"fit", "thrust and torque polynomials from calibration data", "BENCH.csv", 1, 1, {"degree", "constant", "json"}, &run_fit},
+      {"solve",
+       "one nonlinear program",
+       "PROBLEM",
+       1,
+       1,
+       {"solver", "tolerance", "max-iterations", "time-limit", "trace", "json", "quiet", "verbose"},
+       &run_solve},
+      {"compare",
+       "the same problem on every back end, judged by one ruler",
+       "PROBLEM...",
+       1,
+       -1,
+       {"solvers", "set", "rows", "seed", "tolerance", "max-iterations", "time-limit", "json", "quiet"},
+       &run_compare},
+      {"check", "derivatives against differences, pattern, bounds, start", "PROBLEM", 1, 1, {"seed", "tolerance", "json"}, &run_check},
+      {"bench", "benchmark rows: median, p99, machine, versions", "[NAME]", 0, 1, {"json", "quiet"}, &run_bench},
+  };
+  return table;
+}
+
+}  // namespace tenon

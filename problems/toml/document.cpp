@@ -1,0 +1,276 @@
+#include "tenon/problems/toml/document.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#define TOML_ENABLE_FORMATTERS 0
+#include <toml++/toml.h>
+
+#include "tenon/core/nearest_name.hpp"
+#include "tenon/core/read_file.hpp"
+
+namespace tenon::toml_file {
+
+namespace {
+
+struct Override {
+  std::string path;  // rotor.3.spin
+  std::string text;  // as on the command line
+};
+
+struct Tree {
+  std::string file;
+  toml::table root;
+  std::vector<Override> overrides;
+};
+
+InputPosition position_of_override(const std::string& text) { return {"--set " + text, 0, 0}; }
+
+InputPosition position_of(const std::string& file, const toml::source_region& region) {
+  return {file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
+}
+
+std::vector<std::string> split_path(const std::string& path) {
+  std::vector<std::string> parts(1);
+  for (const char c : path) {
+    if (c == '.') parts.emplace_back();
+    else parts.back() += c;
+  }
+  return parts;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+/// The value of an override: TOML, or else a bare word, which is a string.
+toml::table parse_override_value(const std::string& text, const std::string& value) {
+  try {
+    return toml::parse("value = " + value);
+  } catch (const toml::parse_error&) {
+    constexpr std::string_view kNotInAWord = "\"'[]{}=,#\n";
+    if (value.empty() || value.find_first_of(kNotInAWord) != std::string::npos) {
+      throw InputError(position_of_override(text), "'" + value + "' is no TOML value", "a number, true, false, a word or a [list]");
+    }
+    return toml::table{{"value", value}};
+  }
+}
+
+toml::node* element(toml::array& array, const std::string& part, const std::string& text) {
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
+  if (error != std::errc() || end != part.data() + part.size() || index < 1 || index > array.size()) {
+    throw InputError(position_of_override(text), "there is no element '" + part + "'",
+                     array.empty() ? "no element: the list is empty" : "a number from 1 to " + std::to_string(array.size()));
+  }
+  return array.get(index - 1);
+}
+
+void apply_override(toml::table& root, const Override& override_, const std::string& value_text) {
+  const toml::table parsed = parse_override_value(override_.text, value_text);
+  const toml::node& value = *parsed.get("value");
+  const std::vector<std::string> parts = split_path(override_.path);
+  toml::node* node = &root;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const bool last = k + 1 == parts.size();
+    if (parts[k].empty()) throw InputError(position_of_override(override_.text), "the key has an empty part", "key.path=value");
+    if (toml::table* table = node->as_table()) {
+      if (last) table->insert_or_assign(parts[k], value);
+      else node = table->contains(parts[k]) ? table->get(parts[k]) : &table->insert(parts[k], toml::table{}).first->second;
+    } else if (toml::array* array = node->as_array()) {
+      node = element(*array, parts[k], override_.text);
+      if (last) array->replace(array->cbegin() + (std::stoll(parts[k]) - 1), value);
+    } else {
+      throw InputError(position_of_override(override_.text), "'" + parts[k - 1] + "' is a single value", "a table or a list there");
+    }
+  }
+}
+
+std::string kind_of(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::table: return "a table";
+    case toml::node_type::array: return "a list";
+    case toml::node_type::string: return "the text '" + **node.as_string() + "'";
+    case toml::node_type::integer: return "the integer " + std::to_string(**node.as_integer());
+    case toml::node_type::floating_point: return "the number " + std::to_string(**node.as_floating_point());
+    case toml::node_type::boolean: return **node.as_boolean() ? "true" : "false";
+    default: return "a date or time";
+  }
+}
+
+}  // namespace
+
+struct Table::Node {
+  std::shared_ptr<const Tree> tree;
+  const toml::table* table;
+  std::string path;
+
+  std::string path_of(const std::string& key) const {
+    if (key.empty()) return path;
+    return path.empty() ? key : path + "." + key;
+  }
+
+  /// An override at this path or above it; where the file does not have the path, one below it.
+  InputPosition position(const std::string& at, const toml::source_region& region) const {
+    for (auto o = tree->overrides.rbegin(); o != tree->overrides.rend(); ++o) {
+      const bool covers = at == o->path || at.starts_with(o->path + ".") || (region.begin.line == 0 && o->path.starts_with(at + "."));
+      if (covers) return position_of_override(o->text);
+    }
+    return position_of(tree->file, region);
+  }
+
+  const toml::node& require(const std::string& key) const {
+    const toml::node* value = table->get(key);
+    if (value == nullptr) {
+      throw InputError(position(path, table->source()), "key '" + key + "' is missing" + (path.empty() ? "" : " in " + path), "a value for it");
+    }
+    return *value;
+  }
+
+  InputError wrong(const std::string& key, const toml::node& value, const std::string& expected) const {
+    return InputError(position(path_of(key), value.source()), "'" + path_of(key) + "' is " + kind_of(value), expected);
+  }
+
+  double finite(const std::string& key, const toml::node& value, const std::string& expected) const {
+    const std::optional<double> found = value.is_number() ? value.value<double>() : std::nullopt;
+    if (!found) throw wrong(key, value, expected);
+    if (!std::isfinite(*found)) throw wrong(key, value, "a finite number; leave the key out for no limit");
+    return *found;
+  }
+};
+
+bool Table::has(const std::string& key) const { return node_->table->contains(key); }
+
+std::vector<std::string> Table::keys() const {
+  std::vector<std::string> names;
+  for (const auto& [key, value] : *node_->table) names.emplace_back(key.str());
+  return names;
+}
+
+double Table::number(const std::string& key) const { return node_->finite(key, node_->require(key), "a number"); }
+double Table::number(const std::string& key, double fallback) const { return has(key) ? number(key) : fallback; }
+
+int Table::integer(const std::string& key) const {
+  const toml::node& value = node_->require(key);
+  const auto found = value.is_integer() ? value.value<int>() : std::nullopt;
+  if (!found) throw node_->wrong(key, value, "an integer");
+  return *found;
+}
+int Table::integer(const std::string& key, int fallback) const { return has(key) ? integer(key) : fallback; }
+
+bool Table::flag(const std::string& key) const {
+  const toml::node& value = node_->require(key);
+  if (!value.is_boolean()) throw node_->wrong(key, value, "true or false");
+  return **value.as_boolean();
+}
+bool Table::flag(const std::string& key, bool fallback) const { return has(key) ? flag(key) : fallback; }
+
+std::string Table::text(const std::string& key) const {
+  const toml::node& value = node_->require(key);
+  if (!value.is_string()) throw node_->wrong(key, value, "text in quotes");
+  return **value.as_string();
+}
+std::string Table::text(const std::string& key, const std::string& fallback) const { return has(key) ? text(key) : fallback; }
+
+std::vector<double> Table::numbers(const std::string& key, std::size_t size) const {
+  const std::string expected = size == 0 ? "a list of numbers" : "a list of " + std::to_string(size) + " numbers";
+  const toml::node& value = node_->require(key);
+  const toml::array* array = value.as_array();
+  if (array == nullptr) throw node_->wrong(key, value, expected);
+  if (size != 0 && array->size() != size) {
+    throw InputError(position(key), "'" + node_->path_of(key) + "' has " + std::to_string(array->size()) + " entries", expected);
+  }
+  std::vector<double> list;
+  for (const toml::node& entry : *array) list.push_back(node_->finite(key + "." + std::to_string(list.size() + 1), entry, expected));
+  return list;
+}
+
+Eigen::Vector3d Table::vector3(const std::string& key) const {
+  const std::vector<double> list = numbers(key, 3);
+  return {list[0], list[1], list[2]};
+}
+Eigen::Vector3d Table::vector3(const std::string& key, const Eigen::Vector3d& fallback) const {
+  return has(key) ? vector3(key) : fallback;
+}
+
+std::optional<Table> Table::table(const std::string& key, const std::vector<std::string>& known_keys) const {
+  if (!has(key)) return std::nullopt;
+  const toml::node& value = node_->require(key);
+  if (!value.is_table()) throw node_->wrong(key, value, "a table [" + node_->path_of(key) + "]");
+  Table found(std::make_shared<const Node>(Node{node_->tree, value.as_table(), node_->path_of(key)}));
+  found.reject_unknown_keys(known_keys);
+  return found;
+}
+
+std::vector<Table> Table::tables(const std::string& key, const std::vector<std::string>& known_keys) const {
+  std::vector<Table> found;
+  if (!has(key)) return found;
+  const std::string expected = "tables [[" + node_->path_of(key) + "]]";
+  const toml::node& value = node_->require(key);
+  if (!value.is_array()) throw node_->wrong(key, value, expected);
+  for (const toml::node& entry : *value.as_array()) {
+    const std::string name = key + "." + std::to_string(found.size() + 1);
+    if (!entry.is_table()) throw node_->wrong(name, entry, expected);
+    found.push_back(Table(std::make_shared<const Node>(Node{node_->tree, entry.as_table(), node_->path_of(name)})));
+    found.back().reject_unknown_keys(known_keys);
+  }
+  return found;
+}
+
+InputPosition Table::position(const std::string& key) const {
+  const toml::node* value = key.empty() ? nullptr : node_->table->get(key);
+  return node_->position(node_->path_of(key), value == nullptr ? node_->table->source() : value->source());
+}
+
+const std::string& Table::path() const { return node_->path; }
+
+void Table::reject_unknown_keys(const std::vector<std::string>& known_keys) const {
+  if (known_keys.empty()) return;
+  for (const auto& [key, value] : *node_->table) {
+    const std::string name(key.str());
+    if (std::count(known_keys.begin(), known_keys.end(), name) > 0) continue;
+    throw InputError(node_->position(node_->path_of(name), key.source()),
+                     "unknown key '" + name + "'" + (path().empty() ? "" : " in " + path()) + "; the nearest known key is '" +
+                         nearest_name(name, known_keys) + "'",
+                     "one of " + joined(known_keys));
+  }
+}
+
+Document::Document(const std::string& text, const std::string& file, const std::vector<std::string>& overrides) {
+  const auto tree = std::make_shared<Tree>();
+  tree->file = file;
+  try {
+    tree->root = toml::parse(text, file);
+  } catch (const toml::parse_error& error) {
+    std::string what(error.description());
+    std::replace(what.begin(), what.end(), '\n', ' ');
+    throw InputError(position_of(file, error.source()), what, "TOML");
+  }
+  for (const std::string& override_text : overrides) {
+    const auto equals = override_text.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      throw InputError(position_of_override(override_text), "is no assignment", "key.path=value");
+    }
+    tree->overrides.push_back({override_text.substr(0, equals), override_text});
+    apply_override(tree->root, tree->overrides.back(), override_text.substr(equals + 1));
+  }
+  const toml::table* root = &tree->root;
+  root_ = std::make_shared<const Table::Node>(Table::Node{tree, root, ""});
+}
+
+Document Document::read(const std::string& file, const std::vector<std::string>& overrides) {
+  return Document(read_file(file), file, overrides);
+}
+
+Table Document::root(const std::vector<std::string>& known_keys) const {
+  Table table(root_);
+  table.reject_unknown_keys(known_keys);
+  return table;
+}
+
+}  // namespace tenon::toml_file

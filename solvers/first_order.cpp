@@ -1,0 +1,41 @@
+#include "tenon/solvers/first_order.hpp"
+
+#include <cmath>
+
+#include "tenon/solvers/adapter.hpp"
+
+namespace tenon {
+
+FirstOrder::FirstOrder(const Nlp& problem, const Vector& x)
+    : gradient(problem.num_variables()), constraints(problem.num_constraints()), jacobian(problem.jacobian_pattern().zero_matrix()) {
+  PreparedNlp evaluate(problem);
+  objective = evaluate.objective(x);
+  evaluate.gradient(x, gradient);
+  evaluate.constraints(x, constraints);
+  evaluate.jacobian(x, values_of(jacobian));
+}
+
+bool FirstOrder::all_finite() const {
+  return std::isfinite(objective) && gradient.allFinite() && constraints.allFinite() && jacobian.coeffs().allFinite();
+}
+
+Vector signed_violation(const Vector& constraints, const Bounds& bounds) {
+  return (constraints - bounds.c_upper).cwiseMax(0) + (constraints - bounds.c_lower).cwiseMin(0);
+}
+
+bool is_locally_infeasible(const Vector& x, const Bounds& bounds, const FirstOrder& here) {
+  constexpr double kInfeasible = 1e-6;  // a violation above this is one
+  constexpr double kCancelled = 1e-3;   // what J'v may keep of its terms
+  const Vector v = signed_violation(here.constraints, bounds);
+  if (v.size() == 0 || !(v.lpNorm<Eigen::Infinity>() > kInfeasible)) return false;
+
+  const Vector descent = -here.jacobian.transpose() * v;
+  const Vector scale = here.jacobian.cwiseAbs().transpose() * v.cwiseAbs();
+  for (int j = 0; j < x.size(); ++j) {
+    const bool blocked = descent[j] > 0 ? x[j] >= bounds.x_upper[j] : x[j] <= bounds.x_lower[j];
+    if (!blocked && std::abs(descent[j]) > kCancelled * scale[j]) return false;
+  }
+  return true;
+}
+
+}  // namespace tenon
