@@ -7,6 +7,7 @@
 #include "tenon/core/nearest_name.hpp"
 #include "tenon/core/with_slacks.hpp"
 #include "tenon/solvers/ipopt.hpp"
+#include "tenon/solvers/newton_kkt/make_newton_kkt.hpp"
 #include "tenon/solvers/nlopt.hpp"
 
 namespace tenon {
@@ -20,6 +21,7 @@ struct BackEnd {
 };
 
 constexpr BackEnd kBackEnds[] = {
+    {describe_newton_kkt, make_newton_kkt, true},
     {describe_ipopt, make_ipopt, false},
     {describe_nlopt_slsqp, make_nlopt_slsqp, false},
     {describe_nlopt_mma, make_nlopt_mma, false},

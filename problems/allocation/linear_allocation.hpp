@@ -35,6 +35,9 @@ class LinearAllocation {
   /// W' (K K')^+ W: for linear maps the least sum of squared throttles that any command needs for the reachable part of W.
   double effort_lower_bound(const Wrench& wrench) const { return wrench.dot(effort_ * wrench); }
 
+  /// Multipliers of the wrench rows where sum v^2 is least: -2 (K K')^+ W.
+  Wrench effort_multipliers(const Wrench& wrench) const { return -2 * (effort_ * wrench); }
+
   /// What a command (N throttles, N angles) gives, by the true maps.
   Wrench wrench(ConstVectorRef u, ConstVectorRef a) const;
 

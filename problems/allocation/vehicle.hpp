@@ -40,6 +40,7 @@ struct AllocationWeights {
   double angle_rate = 0;           // W_a, per (rad/s)^2
   double angle_rate_penalty = 0;   // W_ap, beyond the soft limit, per (rad/s)^2
   double angle_rate_soft = std::numeric_limits<double>::infinity();  // omega_p, rad/s
+  double branch = 2.88;            // W_b, per rad^2: pull toward the branch of the linear solution, where limits are hard
   double force_error = 1;          // per N^2: the price of a wrench that cannot be had
   double torque_error = 400;       // per (N m)^2: 1/(.05 N m)^2, so that torque comes first
 };

@@ -34,6 +34,7 @@ constexpr WeightKey kWeightKeys[] = {
     {"angle_rate", &AllocationWeights::angle_rate},
     {"angle_rate_penalty", &AllocationWeights::angle_rate_penalty},
     {"angle_rate_soft", &AllocationWeights::angle_rate_soft},
+    {"branch", &AllocationWeights::branch},
     {"force_error", &AllocationWeights::force_error},
     {"torque_error", &AllocationWeights::torque_error},
 };

@@ -2,9 +2,11 @@
 //
 //     min O(u, a)   s.t.   G(u, a) = sum_i [ mu_i n_i ; mu_i r_i x n_i + s_i tau_i n_i ] - W = 0      (allocation.md derives all derivatives)
 //
-//     O = sum W_u u^2 + W_a omega^2 + W_up (throttle beyond soft limits)^2 + W_ap (rate beyond soft limit)^2 + W_b (a - a_branch)^2
+//     soft limits:  O = sum W_u u^2 + W_a omega^2 + W_up (throttle beyond soft limits)^2 + W_ap (rate beyond soft limit)^2
+//     hard limits:  O = sum W_u u^2 + W_b (a - a_branch)^2,   bounds on throttle, angle and angle rate
 //
-// with omega = (a - a_prev)/dt. x = (u_1 .. u_N, a_1 .. a_N). Source: MOMAV controller notes; the branch term is tenon's.
+// with omega = (a - a_prev)/dt. x = (u_1 .. u_N, a_1 .. a_N). The first is the objective of the MOMAV controller notes. Where limits are
+// bounds, what the notes' other terms do is done: penalties would only compete with the wrench, and the rate term would make the arms lag.
 #pragma once
 
 #include <array>
@@ -48,7 +50,7 @@ class WrenchAllocation {
   /// Wanted wrench in body axes (N, N m).
   void set_wrench(const Wrench6& wrench) { wrench_ = wrench; }
 
-  /// Angles (rad) of the tick before and the time since (s). `angles` are also where stuck servos stand.
+  /// Angles (rad) of the tick before and the time since (s).
   void set_previous(const Lanes& angles, S dt) {
     previous_ = angles;
     inverse_dt_ = 1 / dt;
@@ -56,28 +58,28 @@ class WrenchAllocation {
   }
 
   /// No tick before: no rate term and no rate limit.
-  void forget_previous(const Lanes& angles) {
-    previous_ = angles;
+  void forget_previous() {
+    previous_.setZero();
     inverse_dt_ = 0;
     rate_term_ = false;
   }
 
-  /// Pulls the arms toward `angles` (rad) with these weights (per rad^2); weight 0 is the notes' objective.
-  void set_branch(const Lanes& angles, const Lanes& weight) {
-    branch_ = angles;
-    branch_weight_ = weight;
-  }
-
-  void set_hard_limits(bool hard) { hard_limits_ = hard; }
+  /// Where the arms are pulled to (rad), with hard limits.
+  void set_branch(const Lanes& angles) { branch_ = angles; }
 
   /// Rows give way by e = D (lambda - preload): D per N^2 and (N m)^2 weights of the vehicle divided by `stiffness`; stiffness 0: hard rows.
   void set_wrench_stiffness(S stiffness) {
     for (int k = 0; k < 6; ++k) compliance_[k] = stiffness == 0 ? S(0) : 1 / (stiffness * error_weight_[k]);
   }
+  /// Multiplies the whole objective: how much effort counts beside the wrench error of rows that give way.
+  void set_effort_scale(S scale) { w_ = scaled(weights_, scale); }
   void set_preload(const Wrench6& lambda) { preload_ = lambda; }
 
-  void fail_rotor(int i) { failed_[i] = 1; }
-  void stick_servo(int i) { stuck_[i] = 1; }
+  void fail_rotor(int i) { failed_[std::size_t(i)] = true; }
+  void stick_servo(int i, S angle) {
+    stuck_[std::size_t(i)] = true;
+    stuck_angle_[i] = angle;
+  }
 
   // --- the contract -------------------------------------------------------------------------------------------------------------------------
 
@@ -100,7 +102,7 @@ class WrenchAllocation {
     const Lanes low = (soft_lower_ - u).max(S(0)), high = (u - soft_upper_).max(S(0)), fast = (omega.abs() - soft_rate_).max(S(0));
     const Lanes astray = x.template tail<N>().array() - branch_;
     return (w_.u * u.square() + w_.a * omega.square() + w_.up * (low.square() + high.square()) + w_.ap * fast.square() +
-            branch_weight_ * astray.square())
+            w_.b * astray.square())
         .sum();
   }
 
@@ -112,7 +114,7 @@ class WrenchAllocation {
     const Lanes beyond_omega = omega - omega.min(soft_rate_).max(-soft_rate_);
     gradient.template head<N>().array() = 2 * (w_.u * u + w_.up * beyond_u);
     gradient.template tail<N>().array() = (2 * inverse_dt_) * (w_.a * omega + w_.ap * beyond_omega) +
-                                          2 * branch_weight_ * (x.template tail<N>().array() - branch_);
+                                          2 * w_.b * (x.template tail<N>().array() - branch_);
   }
 
   void constraints(const VectorN&, Workspace& at, Wrench6& g) const {
@@ -144,7 +146,7 @@ class WrenchAllocation {
     const Lanes outside_omega = w_.ap * (omega.abs() > soft_rate_).template cast<S>();
     h.uu = 2 * sigma * (w_.u + outside_u) + at.thrust_uu * f + at.torque_uu * t;
     h.au = at.thrust_u * f_a + at.torque_u * t_a;
-    h.aa = 2 * sigma * (inverse_dt_ * inverse_dt_ * (w_.a + outside_omega) + branch_weight_) + at.thrust * f_aa + at.torque * t_aa;
+    h.aa = 2 * sigma * (inverse_dt_ * inverse_dt_ * (w_.a + outside_omega) + w_.b) + at.thrust * f_aa + at.torque * t_aa;
   }
 
   std::string name() const { return name_; }
@@ -187,15 +189,17 @@ class WrenchAllocation {
   Polynomial thrust_, torque_;
   Lanes throttle_lower_, throttle_upper_, angle_lower_, angle_upper_, rate_limit_;
   Eigen::Array<bool, N, 1> tilts_;
-  struct {
-    S u, a, up, ap;
-  } w_;
+  struct Weights {
+    S u, a, up, ap, b;  // W_u, W_a, W_up, W_ap, W_b
+  };
+  static Weights scaled(const Weights& w, S scale) { return {w.u * scale, w.a * scale, w.up * scale, w.ap * scale, w.b * scale}; }
+  Weights weights_, w_;
   S soft_lower_, soft_upper_, soft_rate_;
   Wrench6 error_weight_;
 
   // this tick
   Wrench6 wrench_ = Wrench6::Zero(), preload_ = Wrench6::Zero(), compliance_ = Wrench6::Zero();
-  Lanes previous_ = Lanes::Zero(), branch_ = Lanes::Zero(), branch_weight_ = Lanes::Zero();
+  Lanes previous_ = Lanes::Zero(), branch_ = Lanes::Zero(), stuck_angle_ = Lanes::Zero();
   S inverse_dt_ = 0;
   bool rate_term_ = false;
   bool hard_limits_ = true;
@@ -237,7 +241,9 @@ WrenchAllocation<N, S>::WrenchAllocation(const Vehicle& vehicle) : name_(vehicle
     tilts_[i] = rotor.tilt;
   }
   const AllocationWeights& weights = vehicle.weights;
-  w_ = {S(weights.throttle), S(weights.angle_rate), S(weights.throttle_penalty), S(weights.angle_rate_penalty)};
+  weights_ = hard_limits_ ? Weights{S(weights.throttle), 0, 0, 0, S(weights.branch)}
+                    : Weights{S(weights.throttle), S(weights.angle_rate), S(weights.throttle_penalty), S(weights.angle_rate_penalty), 0};
+  set_effort_scale(1);
   soft_lower_ = S(weights.throttle_soft_lower), soft_upper_ = S(weights.throttle_soft_upper), soft_rate_ = S(weights.angle_rate_soft);
   error_weight_ << Eigen::Matrix<S, 3, 1>::Constant(S(weights.force_error)), Eigen::Matrix<S, 3, 1>::Constant(S(weights.torque_error));
 }
@@ -262,7 +268,7 @@ void WrenchAllocation<N, S>::bounds(BasicBounds<S, kVariables, 6>& bounds) const
   for (int i = 0; i < N; ++i) {
     if (failed_[std::size_t(i)]) u_lower[i] = u_upper[i] = 0;
     if (!tilts_[i]) a_lower[i] = a_upper[i] = 0;
-    else if (stuck_[std::size_t(i)]) a_lower[i] = a_upper[i] = previous_[i];
+    else if (stuck_[std::size_t(i)]) a_lower[i] = a_upper[i] = stuck_angle_[i];
   }
 }
 

@@ -78,6 +78,13 @@ class BarrierBox {
     z.upper = (upper_ < kInfinity<Scalar>).select(z.upper, Scalar(0));
   }
 
+  /// Multipliers on the central path: every product = mu.
+  void centre(const auto& v, Scalar mu, Multipliers& z) const {
+    if (sides_ == 0) return;
+    z.lower = mu / (v - lower_);
+    z.upper = mu / (upper_ - v);
+  }
+
   /// Sigma, the fixed entries' stiffness included.
   void stiffness(const auto& v, const Multipliers& z, auto&& sigma) const {
     if (sides_ == 0) sigma = fixed_;

@@ -64,9 +64,20 @@ class BarrierProblem {
     problem_.bounds(bounds_);
     x_box_.set(bounds_.x_lower, bounds_.x_upper, at.x);
     s_box_.set(bounds_.c_lower, bounds_.c_upper, at.s);
+    compliance_ = bounds_.compliance;
     compliant_ = (bounds_.compliance.array() > 0).any();
     all_compliant_ = m_ > 0 && (bounds_.compliance.array() > 0).all();
   }
+
+  /// Compliant rows are softer while mu is large: a row that the bounds do not let be met then pulls no harder than the barrier pushes, and
+  /// both sharpen together.  newton_kkt.md (13)
+  void soften_rows(Scalar mu) {
+    if (!compliant_) return;
+    compliance_ = bounds_.compliance * std::max(Scalar(1), std::min(mu * kSoftness, Scalar(1)) / bounds_.compliance.maxCoeff());
+  }
+  /// Whether rows have the compliance that was asked for.
+  bool rows_are_firm() const { return compliance_ == bounds_.compliance; }
+  const VectorM& compliance() const { return compliance_; }
 
   /// f and c at at.x. False where a value is not finite.
   bool evaluate(Iterate<P>& at) {
@@ -96,14 +107,14 @@ class BarrierProblem {
 
   /// r_c = c(x) - s - D (lambda - preload)
   auto row_residual(const Iterate<P>& at) const {
-    return (at.constraints - at.s - bounds_.compliance.cwiseProduct(at.lambda - bounds_.preload)).eval();
+    return (at.constraints - at.s - compliance_.cwiseProduct(at.lambda - bounds_.preload)).eval();
   }
 
   bool all_rows_compliant() const { return all_compliant_; }
 
   /// lambda such that every row is met: e = c - s.
   void let_rows_give_way(Iterate<P>& at) const {
-    at.lambda = bounds_.preload + (at.constraints - at.s).cwiseQuotient(bounds_.compliance);
+    at.lambda = bounds_.preload + (at.constraints - at.s).cwiseQuotient(compliance_);
   }
 
   /// Derivative of phi along (dx, ds) where the rows keep giving way: grad f' dx + lambda' (J dx - ds) + barrier.
@@ -119,7 +130,7 @@ class BarrierProblem {
     Scalar phi = at.objective;
     if (compliant_) {
       const auto lean = (at.lambda - bounds_.preload).array();  // e = D lean
-      phi += (bounds_.compliance.array() * lean * (lean / 2 + bounds_.preload.array())).sum();
+      phi += (compliance_.array() * lean * (lean / 2 + bounds_.preload.array())).sum();
     }
     if (sides() > 0) phi -= mu * (x_box_.log_barrier(at.x.array()) + s_box_.log_barrier(at.s.array()));
     return phi;
@@ -128,7 +139,7 @@ class BarrierProblem {
   /// Derivative of phi along the step, at the linearised iterate.
   Scalar barrier_slope(const Iterate<P>& at, const Step<P>& step, Scalar mu) const {
     Scalar slope = gradient_.dot(step.x);
-    if (compliant_) slope += (bounds_.compliance.array() * at.lambda.array() * step.lambda.array()).sum();
+    if (compliant_) slope += (compliance_.array() * at.lambda.array() * step.lambda.array()).sum();
     return slope + logarithms_slope(at, step, mu);
   }
 
@@ -179,6 +190,9 @@ class BarrierProblem {
   BoundsOf<P> bounds_;
   BarrierBox<Scalar, P::kVariables> x_box_;
   BarrierBox<Scalar, P::kConstraints> s_box_;
+  static constexpr Scalar kSoftness = 100;
+
+  VectorM compliance_;
   bool compliant_ = false, all_compliant_ = false;
   VectorN gradient_, stationarity_;
   JacobianOf<P> jacobian_;

@@ -26,8 +26,8 @@ class FilterLineSearch {
   Scalar alpha() const { return alpha_; }
 
   /// Looks for an acceptable `trial` = now + alpha step, alpha <= alpha_max; `step` becomes the one taken. False where there is none.
-  bool search(BarrierProblem<P>& barrier, NewtonSystem<P, Kkt>& system, const Iterate<P>& now, Step<P>& step, Scalar alpha_max, Scalar tau,
-              Scalar mu, Iterate<P>& trial) {
+  bool search(BarrierProblem<P>& barrier, NewtonSystem<P, Kkt>& system, const Iterate<P>& now, Step<P>& step, Scalar alpha_max,
+              Scalar alpha_dual, Scalar tau, Scalar mu, Scalar error, Iterate<P>& trial) {
     theta_ = barrier.violation(now);
     phi_ = barrier.barrier_objective(now, mu);
     slope_ = barrier.barrier_slope(now, step, mu);
@@ -36,15 +36,16 @@ class FilterLineSearch {
     const Scalar alpha_min = smallest_step();
     for (alpha_ = alpha_max; alpha_ >= alpha_min; alpha_ /= 2) {
       if (try_point(barrier, now, step, mu, trial)) return true;
-      const bool violation_grew = trial_finite_ && trial_theta_ >= theta_;
-      if (trials_ == 1 && violation_grew && correct(barrier, system, now, step, tau, mu, trial)) return true;
+      if (trials_ > 1 || !trial_finite_) continue;
+      if (error_falls(barrier, now, step, alpha_dual, mu, error, trial)) return true;
+      if (trial_theta_ >= theta_ && correct(barrier, system, now, step, tau, mu, trial)) return true;
     }
     return barrier.all_rows_compliant() && give_way(barrier, now, step, alpha_max, mu, trial);
   }
 
  private:
   static constexpr Scalar kGammaTheta = Scalar(1e-5), kGammaPhi = Scalar(1e-8), kDelta = 1, kSTheta = Scalar(1.1), kSPhi = Scalar(2.3),
-                          kEtaPhi = Scalar(1e-8), kGammaAlpha = Scalar(0.05), kKappaSoc = Scalar(0.99);
+                          kEtaPhi = Scalar(1e-8), kGammaAlpha = Scalar(0.05), kKappaSoc = Scalar(0.99), kErrorFall = Scalar(0.9), kNearSolution = Scalar(1e-2);
   static constexpr int kMaxCorrections = 4;
 
   /// now + alpha step, evaluated and judged.
@@ -57,6 +58,15 @@ class FilterLineSearch {
     if (!trial_finite_) return false;
     trial_theta_ = barrier.violation(trial);
     return acceptable(trial_theta_, barrier.barrier_objective(trial, mu));
+  }
+
+  /// Newton's own measure: a full step that brings the primal-dual error down is a good one, even where the barrier objective, which rounding
+  /// spoils near the solution, does not see it.
+  bool error_falls(BarrierProblem<P>& barrier, const Iterate<P>& now, const Step<P>& step, Scalar alpha_dual, Scalar mu, Scalar error,
+                   Iterate<P>& trial) {
+    if (!(error < kNearSolution)) return false;
+    take_dual_step(now, step, alpha_dual, trial);
+    return barrier.linearise(trial) && barrier.error(trial, mu).max_scaled() <= kErrorFall * error;
   }
 
   /// [WB06, eq. 18-20, with the rounding of phi allowed for]

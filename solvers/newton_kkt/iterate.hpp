@@ -47,4 +47,13 @@ struct Step {
   }
 };
 
+/// Bound multipliers of `to` = those of `from` + alpha times the step's.
+template <class P>
+void take_dual_step(const Iterate<P>& from, const Step<P>& step, typename P::Scalar alpha, Iterate<P>& to) {
+  to.zx.lower = from.zx.lower + alpha * step.zx.lower;
+  to.zx.upper = from.zx.upper + alpha * step.zx.upper;
+  to.zs.lower = from.zs.lower + alpha * step.zs.lower;
+  to.zs.upper = from.zs.upper + alpha * step.zs.upper;
+}
+
 }  // namespace tenon

@@ -42,6 +42,10 @@ class NewtonKkt {
       update_barrier();
       if ((ended = factor())) break;
       compute_step();
+      if (warm_start_hits_a_wall()) {
+        recentre();
+        continue;
+      }
       if ((ended = search())) break;
       accept();
     }
@@ -55,6 +59,7 @@ class NewtonKkt {
     now_.x = point.x;
     now_.lambda = point.lambda;
     iterations_ = tiny_steps_ = 0;
+    trust_guess_ = options_.warm_start;
     alpha_primal_ = alpha_dual_ = 0;
     system_.reset();
     barrier_.take_bounds(now_);
@@ -67,6 +72,7 @@ class NewtonKkt {
     if (options_.warm_start) warm_multipliers(point);
     else cold_multipliers();
     if (barrier_.sides() == 0) mu_.switch_off();
+    barrier_.soften_rows(mu_.value());
     line_search_.start(barrier_.violation(now_));
     return std::nullopt;
   }
@@ -99,7 +105,7 @@ class NewtonKkt {
   }
 
   std::optional<Status> stop() {
-    if (error_.max_scaled() <= tolerance()) return Status::solved;
+    if (error_.max_scaled() <= tolerance() && barrier_.rows_are_firm()) return Status::solved;
     if (options_.on_iteration && stopped_) return Status::stopped;
     if (iterations_ >= options_.max_iterations) return Status::iteration_limit;
     if (std::isfinite(options_.time_limit) && elapsed() >= options_.time_limit) return Status::time_limit;
@@ -113,6 +119,7 @@ class NewtonKkt {
   void update_barrier() {
     while (!mu_.at_end() && (mu_.solved(barrier_.error(now_, mu_.value()).max_scaled()) || tiny_steps_ > 0)) {
       mu_.decrease();
+      barrier_.soften_rows(mu_.value());
       line_search_.reset();
       tiny_steps_ = 0;
     }
@@ -133,9 +140,32 @@ class NewtonKkt {
                            barrier_.s_box().max_multiplier_step(now_.zs, step_.zs, tau));
   }
 
+  /// A warm start has a small mu and a guess of the active bounds. Where a bound that it did not guess cuts the step short, the iterates would
+  /// creep along the walls: better to begin again, from this point moved inside, with a barrier worth the name.
+  bool warm_start_hits_a_wall() const {
+    return trust_guess_ && std::min(alpha_primal_, alpha_dual_) < kWall && mu_.value() < kRecentre;
+  }
+
+  void recentre() {
+    trust_guess_ = false;
+    ++iterations_;
+    mu_.start(kRecentre, tolerance());
+    barrier_.soften_rows(mu_.value());
+    barrier_.x_box().push_inside(now_.x.array(), kColdPush, kColdPush);
+    barrier_.evaluate(now_);
+    set_slacks(kColdPush);
+    barrier_.x_box().centre(now_.x.array(), mu_.value(), now_.zx);
+    barrier_.s_box().centre(now_.s.array(), mu_.value(), now_.zs);
+    barrier_.linearise(now_);
+    line_search_.start(barrier_.violation(now_));
+  }
+
   std::optional<Status> search() {
     if (!step_.x.allFinite() || !step_.lambda.allFinite()) return Status::numerical_failure;
-    if (line_search_.search(barrier_, system_, now_, step_, alpha_primal_, mu_.tau(), mu_.value(), trial_)) return std::nullopt;
+    const Scalar error = barrier_.error(now_, mu_.value()).max_scaled();
+    if (line_search_.search(barrier_, system_, now_, step_, alpha_primal_, alpha_dual_, mu_.tau(), mu_.value(), error, trial_)) {
+      return std::nullopt;
+    }
     barrier_.return_to(now_);
     return no_progress();
   }
@@ -145,10 +175,7 @@ class NewtonKkt {
     const Scalar largest = (step_.x.array().abs() / (1 + now_.x.array().abs())).maxCoeff() * alpha_primal_;
     tiny_steps_ = largest < 10 * std::numeric_limits<Scalar>::epsilon() ? tiny_steps_ + 1 : 0;
 
-    trial_.zx.lower = now_.zx.lower + alpha_dual_ * step_.zx.lower;
-    trial_.zx.upper = now_.zx.upper + alpha_dual_ * step_.zx.upper;
-    trial_.zs.lower = now_.zs.lower + alpha_dual_ * step_.zs.lower;
-    trial_.zs.upper = now_.zs.upper + alpha_dual_ * step_.zs.upper;
+    take_dual_step(now_, step_, alpha_dual_, trial_);
     barrier_.x_box().safeguard(trial_.x.array(), mu_.value(), trial_.zx);
     barrier_.s_box().safeguard(trial_.s.array(), mu_.value(), trial_.zs);
     std::swap(now_, trial_);
@@ -186,6 +213,7 @@ class NewtonKkt {
 
   static constexpr Scalar kColdPush = Scalar(1e-2);    // kappa_1 = kappa_2 of [WB06, sec. 3.6]
   static constexpr Scalar kWarmPush = Scalar(1e-6);
+  static constexpr Scalar kWall = Scalar(0.3), kRecentre = Scalar(1e-3);
   static constexpr Scalar kDivergence = Scalar(1e20);
   static constexpr Scalar kAcceptableFactor = 100;
 
@@ -201,7 +229,7 @@ class NewtonKkt {
   Scalar alpha_primal_ = 0, alpha_dual_ = 0;
   typename Clock::time_point begin_;
   int iterations_ = 0, tiny_steps_ = 0;
-  bool stopped_ = false;
+  bool stopped_ = false, trust_guess_ = false;
 };
 
 }  // namespace tenon

@@ -80,7 +80,7 @@ class NewtonSystem {
     // 1/Sigma_s: 0 for the fixed slack of an equality, at most 1e30 for a row without bounds
     barrier.s_box().stiffness(at.s.array(), at.zs, give_s_.array());
     give_s_.array() = barrier.s_box().free_mask() / (give_s_.array() + delta_w).max(Scalar(1) / Scalar(kFixedStiffness));
-    d_ = give_s_ + barrier.bounds().compliance;
+    d_ = give_s_ + barrier.compliance();
     if (delta_c > 0) d_.array() += delta_c;
     inertia_ = kkt_.factor(barrier.hessian(), barrier.jacobian(), sigma_x_, d_);
     return inertia_.zero == 0 && inertia_.negative == barrier.m();

@@ -1,0 +1,16 @@
+// Newton-KKT for any Nlp, behind the face that all back ends share.
+#pragma once
+
+#include <memory>
+
+#include "tenon/core/solver.hpp"
+#include "tenon/solvers/make_solver.hpp"
+
+namespace tenon {
+
+/// The sparse instance of NewtonKkt. Throws std::invalid_argument for options or bounds that make no sense.
+std::unique_ptr<Solver> make_newton_kkt(const Nlp& problem, const Options& options);
+
+SolverDescription describe_newton_kkt();
+
+}  // namespace tenon

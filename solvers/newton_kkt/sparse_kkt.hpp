@@ -1,0 +1,49 @@
+// The KKT system of a sparse problem:
+//
+//     K = [ H + diag(sigma)    J'      ]  n        S K S = P' L D L' P
+//         [ J                 -diag(D) ]  m
+//
+// The patterns of H and J are fixed: order of elimination and memory are settled at construction. S equilibrates K, by powers of two. Small
+// systems are factored dense (dense_ldlt.hpp), others by fronts (multifrontal_ldlt.hpp). Equations: linear_algebra.md.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "tenon/core/sparse_pattern.hpp"
+#include "tenon/solvers/newton_kkt/dense_ldlt.hpp"
+#include "tenon/solvers/newton_kkt/multifrontal_ldlt.hpp"
+
+namespace tenon {
+
+class SparseKkt {
+ public:
+  /// hessian: lower triangle, n x n; jacobian: m x n. Nothing allocates after construction.
+  SparseKkt(const SparsePattern& hessian, const SparsePattern& jacobian);
+
+  /// hessian, jacobian: with these patterns; sigma: n, >= 0, up to 1e30; d: m, >= 0.
+  Inertia factor(const SparseMatrix& hessian, const SparseMatrix& jacobian, ConstVectorRef sigma, ConstVectorRef d);
+
+  /// K [dx; dlambda] = [r_x; r_c]. Where `factor` reported zero > 0 the answer is finite but means little.
+  void solve(ConstVectorRef r_x, ConstVectorRef r_c, VectorRef dx, VectorRef dlambda);
+
+ private:
+  int size() const { return n_ + m_; }
+  void assemble(const SparseMatrix& hessian, const SparseMatrix& jacobian, ConstVectorRef sigma, ConstVectorRef d);
+  void equilibrate();
+  Inertia factor_values();
+  void apply_inverse(Vector& x);
+  double backward_error();
+
+  int n_, m_;
+  SparsePattern lower_;                              // of K, with its whole diagonal first in each column
+  std::vector<int> hessian_places_, jacobian_places_;  // where their entries are in lower_
+  Vector values_;                                    // of S K S
+  Vector scale_, sweep_scale_;
+  std::unique_ptr<DenseLdlt<double, Dynamic>> dense_;  // one of the two
+  std::unique_ptr<MultifrontalLdlt> sparse_;
+  DenseLdlt<double, Dynamic>::Storage dense_values_;
+  Vector rhs_, solution_, previous_, residual_, weight_, padded_;
+};
+
+}  // namespace tenon
