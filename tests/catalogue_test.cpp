@@ -140,7 +140,8 @@ TEST_P(EverySolver, ReachesThePublishedObjective) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, EverySolver,
-                         testing::Combine(testing::ValuesIn(available_solvers()), testing::ValuesIn(problem_names())), [](const auto& p) { return identifier(std::get<0>(p.param) + "_" + std::get<1>(p.param)); });
+                         testing::Combine(testing::ValuesIn(available_solvers()), testing::ValuesIn(problem_names())),
+                         [](const auto& p) { return identifier(std::get<0>(p.param) + "_" + std::get<1>(p.param)); });
 
 TEST(Catalogue, IsSortedByName) {
   EXPECT_TRUE(std::ranges::is_sorted(catalogue(), {}, &CatalogueEntry::name));
