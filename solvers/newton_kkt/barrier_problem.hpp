@@ -190,7 +190,7 @@ class BarrierProblem {
   BoundsOf<P> bounds_;
   BarrierBox<Scalar, P::kVariables> x_box_;
   BarrierBox<Scalar, P::kConstraints> s_box_;
-  static constexpr Scalar kSoftness = 100;
+  static constexpr Scalar kSoftness = 1000;
 
   VectorM compliance_;
   bool compliant_ = false, all_compliant_ = false;

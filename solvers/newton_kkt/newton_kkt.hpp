@@ -72,7 +72,7 @@ class NewtonKkt {
     if (options_.warm_start) warm_multipliers(point);
     else cold_multipliers();
     if (barrier_.sides() == 0) mu_.switch_off();
-    barrier_.soften_rows(mu_.value());
+    barrier_.soften_rows(mu_.at_end() ? 0 : mu_.value());
     line_search_.start(barrier_.violation(now_));
     return std::nullopt;
   }
@@ -119,7 +119,7 @@ class NewtonKkt {
   void update_barrier() {
     while (!mu_.at_end() && (mu_.solved(barrier_.error(now_, mu_.value()).max_scaled()) || tiny_steps_ > 0)) {
       mu_.decrease();
-      barrier_.soften_rows(mu_.value());
+      barrier_.soften_rows(mu_.at_end() ? 0 : mu_.value());
       line_search_.reset();
       tiny_steps_ = 0;
     }
@@ -150,7 +150,7 @@ class NewtonKkt {
     trust_guess_ = false;
     ++iterations_;
     mu_.start(kRecentre, tolerance());
-    barrier_.soften_rows(mu_.value());
+    barrier_.soften_rows(mu_.at_end() ? 0 : mu_.value());
     barrier_.x_box().push_inside(now_.x.array(), kColdPush, kColdPush);
     barrier_.evaluate(now_);
     set_slacks(kColdPush);
