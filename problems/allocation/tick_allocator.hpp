@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "tenon/core/options.hpp"
 #include "tenon/core/point.hpp"
@@ -21,7 +22,7 @@
 
 namespace tenon {
 
-/// SolverType: constructed from (const WrenchAllocation<N>&, const Options&), with `Result solve(PointOf<WrenchAllocation<N>>&)`.
+/// SolverType: built from (const WrenchAllocation<N>&, const Options&), with `Result solve(PointOf<WrenchAllocation<N>>&)`.
 template <int N, class SolverType>
 class TickAllocator final : public Allocator {
  public:
@@ -30,10 +31,15 @@ class TickAllocator final : public Allocator {
 
   /// Throws std::invalid_argument where the vehicle has not N rotors.
   TickAllocator(const Vehicle& vehicle, const Options& options)
+      : TickAllocator(vehicle, options, [](const Problem& problem, const Options& each) { return SolverType(problem, each); }) {}
+
+  /// `make(problem, options)` returns a SolverType.
+  template <class Make>
+  TickAllocator(const Vehicle& vehicle, const Options& options, Make&& make)
       : linear_(vehicle),
         problem_(vehicle),
-        solver_(problem_, with_warm_start(options, true)),
-        rescue_(problem_, with_warm_start(options, false)),
+        solver_(make(std::as_const(problem_), with_warm_start(options, true))),
+        rescue_(make(std::as_const(problem_), with_warm_start(options, false))),
         hard_limits_(vehicle.hard_limits) {
     for (int i = 0; i < N; ++i) {
       const Rotor& rotor = vehicle.rotors[std::size_t(i)];
@@ -85,24 +91,23 @@ class TickAllocator final : public Allocator {
  private:
   static Options with_warm_start(Options options, bool warm) {
     options.warm_start = warm;
-    options.max_iterations = std::min(options.max_iterations, warm?kMaxWarm:kMaxIterations);
+    options.max_iterations = std::min(options.max_iterations, warm ? kMaxWarmIterations : kMaxIterations);
     return options;
   }
 
   bool solve_with_bounds(const Wrench& wrench, double dt) {
     problem_.set_wrench_stiffness(kStiffness);
     start_at_branch(wrench, dt);
-    if (attempt(solver_, wrench)) return settle(wrench);
+    if (attempt(solver_)) return settle(wrench);
 
-    // a wrench far out of reach: softer rows, from a start that trusts nothing
+    // A wrench out of reach: the same stiffness relative to the effort, but scaled so that the wrench error is what is minimised, and from
+    // a start that trusts no guess.
     problem_.set_wrench_stiffness(1);
     problem_.set_effort_scale(kFaintEffort);
     start_at_branch(wrench, dt);
-    point_.lambda *= kFaintEffort;
-    problem_.set_preload(point_.lambda);
-    const bool ok=attempt(rescue_, wrench) && judge(wrench);
+    const bool usable = attempt(rescue_) && judge(wrench);
     problem_.set_effort_scale(1);
-    return ok;
+    return usable;
   }
 
   /// x at the arms' reference; an arm that the rate limit holds back starts at its bound, with a multiplier that says so.
@@ -122,7 +127,7 @@ class TickAllocator final : public Allocator {
     const Lanes astray = (a_linear_.array() - branch).cos().max(kLeastCosine);
     point_.x.template head<N>() = (u_linear_.array() * astray).max(throttle_lower_).min(throttle_upper_).matrix();
     point_.x.template tail<N>() = branch.matrix();
-    point_.lambda = linear_.effort_multipliers(wrench);
+    point_.lambda = linear_.effort_multipliers(wrench) * problem_.effort_scale();
     problem_.set_preload(point_.lambda);
   }
 
@@ -130,7 +135,7 @@ class TickAllocator final : public Allocator {
   bool settle(const Wrench& wrench) {
     for (int k = 0; k < kMaxSettlings && !met(wrench) && nearly_met(); ++k) {
       problem_.set_preload(point_.lambda);
-      if (!attempt(solver_, wrench)) break;
+      if (!attempt(solver_)) break;
     }
     return judge(wrench);
   }
@@ -142,14 +147,14 @@ class TickAllocator final : public Allocator {
 
   bool solve_with_penalties(const Wrench& wrench) {
     problem_.set_wrench_stiffness(0);
-    if (has_previous_ && has_point_ && attempt(solver_, wrench)) return judge(wrench);
+    if (has_previous_ && has_point_ && attempt(solver_)) return judge(wrench);
     start_at_linear(wrench);
-    if (attempt(solver_, wrench)) return judge(wrench);
+    if (attempt(solver_)) return judge(wrench);
     // a vehicle that cannot make every wrench, or a singular pose: rows that may give way
-    problem_.set_wrench_stiffness(kSoftStiffness);
+    problem_.set_wrench_stiffness(1 / kFaintEffort);
     problem_.set_preload(Wrench::Zero());
     start_at_linear(wrench);
-    return attempt(rescue_, wrench) && judge(wrench);
+    return attempt(rescue_) && judge(wrench);
   }
 
   void start_at_linear(const Wrench& wrench) {
@@ -159,12 +164,12 @@ class TickAllocator final : public Allocator {
   }
 
   /// Solves from point_; takes the command over where the solver succeeded.
-  bool attempt(SolverType& solver, const Wrench&) {
+  bool attempt(SolverType& solver) {
     const Result result = solver.solve(point_);
     out_.iterations += result.iterations;
     has_point_ = succeeded(result.status);
     if (!has_point_) return false;
-    out_.objective = result.objective;
+    out_.objective = result.objective / problem_.effort_scale();
     out_.residual = result.residual.max();
     out_.throttle = point_.x.template head<N>();
     out_.angle = point_.x.template tail<N>();
@@ -194,11 +199,10 @@ class TickAllocator final : public Allocator {
   }
 
   static constexpr int kMaxIterations = 60;
-  static constexpr int kMaxWarm = 20;
+  static constexpr int kMaxWarmIterations = 20;
   static constexpr int kMaxSettlings = 3;
   static constexpr double kStiffness = 1e6;          // an attainable wrench gives way by 1e-6 times the change of the multipliers
-  static constexpr double kFaintEffort = 1e-4;
-  static constexpr double kSoftStiffness = 1e4;
+  static constexpr double kFaintEffort = 1e-4;       // per unit of weighted squared wrench error
   static constexpr double kMetRelative = 1e-8;
   static constexpr double kNearlyMet = 1e-2;         // N, N m: beyond, the limits are in the way
   static constexpr double kBranchGain = 0.2;         // per tick; small enough to filter noise, large enough not to lag at 1 rad/s

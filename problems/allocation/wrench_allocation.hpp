@@ -72,7 +72,12 @@ class WrenchAllocation {
     for (int k = 0; k < 6; ++k) compliance_[k] = stiffness == 0 ? S(0) : 1 / (stiffness * error_weight_[k]);
   }
   /// Multiplies the whole objective: how much effort counts beside the wrench error of rows that give way.
-  void set_effort_scale(S scale) { w_ = scaled(weights_, scale); }
+  void set_effort_scale(S scale) {
+    effort_scale_ = scale;
+    w_ = scaled(weights_, scale);
+  }
+  S effort_scale() const { return effort_scale_; }
+
   void set_preload(const Wrench6& lambda) { preload_ = lambda; }
 
   void fail_rotor(int i) { failed_[std::size_t(i)] = true; }
@@ -193,7 +198,8 @@ class WrenchAllocation {
     S u, a, up, ap, b;  // W_u, W_a, W_up, W_ap, W_b
   };
   static Weights scaled(const Weights& w, S scale) { return {w.u * scale, w.a * scale, w.up * scale, w.ap * scale, w.b * scale}; }
-  Weights weights_, w_;
+  Weights weights_, w_;  // as given, and times the effort scale
+  S effort_scale_ = 1;
   S soft_lower_, soft_upper_, soft_rate_;
   Wrench6 error_weight_;
 

@@ -1,0 +1,37 @@
+// Any back end in the place of a fixed-size solver: the problem is lifted to an Nlp, points are copied to and fro.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "tenon/core/as_nlp.hpp"
+#include "tenon/core/point.hpp"
+#include "tenon/solvers/make_solver.hpp"
+
+namespace tenon {
+
+template <class P>
+class BackEndSolver {
+ public:
+  /// `problem` must outlive this. Throws as make_solver() does.
+  BackEndSolver(const P& problem, const std::string& name, const Options& options)
+      : lifted_(std::make_unique<AsNlp<P>>(problem)), solver_(make_solver(name, *lifted_, options)), point_(P::kVariables, P::kConstraints) {}
+
+  Result solve(PointOf<P>& point) {
+    point_.x = point.x;
+    point_.lambda = point.lambda;
+    point_.z = point.z;
+    const Result result = solver_->solve(point_);
+    point.x = point_.x;
+    point.lambda = point_.lambda;
+    point.z = point_.z;
+    return result;
+  }
+
+ private:
+  std::unique_ptr<AsNlp<P>> lifted_;  // at an address that stays when this moves
+  std::unique_ptr<Solver> solver_;
+  Point point_;
+};
+
+}  // namespace tenon
