@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <optional>
+#include <stdexcept>
 
 #include "tenon/apps/allocation_summary.hpp"
 #include "tenon/apps/comma_list.hpp"
@@ -78,6 +79,7 @@ Options allocation_options(const Arguments& arguments, const SolverChoice& choic
 }  // namespace
 
 int run_allocate(const Arguments& arguments) {
+  if (arguments.wrenches.empty()) throw std::invalid_argument("allocate: nothing to allocate (expected --wrenches FILE.csv)");
   if (arguments.cold && arguments.initial) throw std::invalid_argument("--cold and --initial exclude one another (expected one of them)");
   const VehicleFile file = load_vehicle(arguments.names.front(), arguments.set);
   const Vehicle& vehicle = file.vehicle;
@@ -102,6 +104,7 @@ int run_allocate(const Arguments& arguments) {
     Progress progress("allocate", std::ssize(log), arguments.quiet);
     for (std::size_t k = 0; k < log.size() && !interrupted(); ++k) {
       if (arguments.cold) allocator->reset();
+      observers.begin_row(static_cast<long>(k));
       failures.apply(log[k].t, *allocator, arguments.quiet);
       const Allocation& allocation = allocator->allocate(log[k].wrench, log[k].dt);
       if (csv) write_row(*csv, log[k].t, allocation);
@@ -110,7 +113,7 @@ int run_allocate(const Arguments& arguments) {
     }
   }
   if (interrupted()) {
-    if (csv) csv->file().path() == "-" ? void() : fmt::print(stderr, "tenon: interrupted, {} rows are in {}\n", csv->rows(), csv->file().partial_path());
+    if (csv && !arguments.output.empty()) fmt::print(stderr, "tenon: interrupted, {} rows are in {}\n", csv->rows(), csv->file().partial_path());
     return kInterrupted;
   }
   if (csv) csv->finish();

@@ -33,7 +33,7 @@ void AllocationSummary::add(const Wrench& asked, double dt, bool has_past, const
   last_angle_ = allocation.angle;
   effort_.push_back(allocation.throttle.squaredNorm());
   const double bound = has_bound_ ? linear_.effort_lower_bound(asked) : 0;
-  if (bound > 0 && allocation.status == AllocationStatus::solved) over_bound_.push_back(effort_.back() / bound - 1);
+  if (bound > 0 && allocation.status == AllocationStatus::solved) over_bound_.push_back(std::max(0.0, effort_.back() / bound - 1));  // less is rounding
   seconds_.push_back(allocation.elapsed);
 }
 

@@ -14,11 +14,11 @@ std::string number(double value) { return std::isfinite(value) ? fmt::format("{}
 
 }  // namespace
 
-std::string trace_line(const Iteration& it) {
+std::string trace_line(const Iteration& it, long row) {
   return fmt::format(
-      "{{\"index\":{},\"objective\":{},\"primal\":{},\"dual\":{},\"complementarity\":{},\"mu\":{},\"alpha_primal\":{},\"alpha_dual\":{},"
+      "{{{}\"index\":{},\"objective\":{},\"primal\":{},\"dual\":{},\"complementarity\":{},\"mu\":{},\"alpha_primal\":{},\"alpha_dual\":{},"
       "\"regularization\":{},\"trials\":{}}}\n",
-      it.index, number(it.objective), number(it.primal), number(it.dual), number(it.complementarity), number(it.mu), number(it.alpha_primal),
+      row < 0 ? "" : fmt::format("\"row\":{},", row), it.index, number(it.objective), number(it.primal), number(it.dual), number(it.complementarity), number(it.mu), number(it.alpha_primal),
       number(it.alpha_dual), number(it.regularization), it.trials);
 }
 
@@ -41,7 +41,7 @@ std::function<bool(const Iteration&)> Observers::callback() {
   return [this](const Iteration& iteration) {
     if (verbose_) fmt::print(stderr, "{}", table_line(iteration));
     try {
-      if (trace_) trace_->append(trace_line(iteration));
+      if (trace_) trace_->append(trace_line(iteration, row_));
     } catch (const OutputError&) {  // must not cross a library's own loop
       failure_ = std::current_exception();
     }

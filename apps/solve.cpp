@@ -1,19 +1,30 @@
 // tenon solve PROBLEM: one nonlinear program, from its own starting point.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <stdexcept>
+
 #include "tenon/apps/interrupt.hpp"
 #include "tenon/apps/observers.hpp"
 #include "tenon/apps/result_json.hpp"
 #include "tenon/apps/table.hpp"
 #include "tenon/apps/verb.hpp"
 #include "tenon/problems/catalogue.hpp"
+#include "tenon/solvers/make_solver.hpp"
 
 namespace tenon {
 
 namespace {
 
-constexpr const char* kDefaultSolver = "newton-kkt";
 constexpr int kVariablesShown = 20;
+
+/// The first back end that is there: tenon's own comes first in the list.
+std::string default_solver() {
+  for (const SolverDescription& s : list_solvers()) {
+    if (s.available) return s.name;
+  }
+  throw std::invalid_argument("no solver is available (expected a build with at least one back end)");
+}
 
 void print_result(const Nlp& problem, const CatalogueEntry& entry, const Measurement& m, double tolerance) {
   const Result& result = m.result;
@@ -49,7 +60,7 @@ int run_solve(const Arguments& arguments) {
   Options options = arguments.options();
   Observers observers(arguments);
   options.on_iteration = observers.callback();
-  const Measurement m = measure(*problem, arguments.solver.value_or(kDefaultSolver), options, suggested_start(*problem), 0);
+  const Measurement m = measure(*problem, arguments.solver ? *arguments.solver : default_solver(), options, suggested_start(*problem), 0);
   if (!m.refusal.empty()) throw std::invalid_argument(m.refusal);
   observers.finish();
   if (arguments.json) print(result_json(*problem, m, options.tolerance));

@@ -54,10 +54,13 @@ OutputFile::~OutputFile() {
     flush();
   } catch (const OutputError&) {
   }
-  if (descriptor_ >= 0) ::close(descriptor_);
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
+  if (!is_started_ && partial_path_ != path_) std::remove(partial_path_.c_str());
 }
 
 void OutputFile::append(std::string_view record) {
+  is_started_ = true;
   buffer_.append(record);
   if (buffer_.size() >= kBufferBytes) flush();
 }
