@@ -45,7 +45,8 @@ void write_row(CsvWriter& csv, double t, const Allocation& allocation) {
 /// Hands the vehicle's failures to the allocator when their time has come.
 class Failures {
  public:
-  explicit Failures(const Vehicle& vehicle) : vehicle_(vehicle), rotor_(vehicle.rotors.size(), false), servo_(vehicle.rotors.size(), false) {}
+  explicit Failures(const Vehicle& vehicle)
+      : vehicle_(vehicle), rotor_(vehicle.rotors.size(), false), servo_(vehicle.rotors.size(), false) {}
 
   void apply(double t, Allocator& allocator, bool quiet) {
     for (std::size_t i = 0; i < rotor_.size(); ++i) {
@@ -97,7 +98,8 @@ int run_allocate(const Arguments& arguments) {
 
   // Without --output the record itself goes to stdout, unless the summary does as JSON.
   std::optional<CsvWriter> csv;
-  if (!arguments.output.empty() || !arguments.json) csv.emplace(arguments.output.empty() ? "-" : arguments.output, column_names(vehicle.num_rotors()));
+  if (!arguments.output.empty() || !arguments.json)
+    csv.emplace(arguments.output.empty() ? "-" : arguments.output, column_names(vehicle.num_rotors()));
   AllocationSummary summary(vehicle, solver);
   Failures failures(vehicle);
   {
@@ -113,13 +115,16 @@ int run_allocate(const Arguments& arguments) {
     }
   }
   if (interrupted()) {
-    if (csv && !arguments.output.empty()) fmt::print(stderr, "tenon: interrupted, {} rows are in {}\n", csv->rows(), csv->file().partial_path());
+    if (csv && !arguments.output.empty())
+      fmt::print(stderr, "tenon: interrupted, {} rows are in {}\n", csv->rows(), csv->file().partial_path());
     return kInterrupted;
   }
   if (csv) csv->finish();
   observers.finish();
-  if (arguments.json) print(summary.json());
-  else if (!arguments.quiet) fmt::print(arguments.output.empty() ? stderr : stdout, "{}", summary.text());
+  if (arguments.json)
+    print(summary.json());
+  else if (!arguments.quiet)
+    fmt::print(arguments.output.empty() ? stderr : stdout, "{}", summary.text());
   return kFinished;
 }
 

@@ -20,7 +20,8 @@ namespace {
 const std::map<std::string, std::function<CLI::Option*(CLI::App&, Arguments&)>>& flags() {
   using App = CLI::App;
   using Args = Arguments;
-  static const CLI::Validator finite([](std::string& text) { return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : text + " is not finite"; }, "");
+  static const CLI::Validator finite(
+      [](std::string& text) { return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : text + " is not finite"; }, "");
   static const CLI::Validator count = CLI::Range(0, 1 << 30).description("");
   static const std::map<std::string, std::function<CLI::Option*(App&, Args&)>> table{
       {"wrenches", [](App& a, Args& v) { return a.add_option("--wrenches", v.wrenches, "the wrench log")->type_name("FILE.csv"); }},
@@ -30,20 +31,29 @@ const std::map<std::string, std::function<CLI::Option*(CLI::App&, Arguments&)>>&
       {"solvers", [](App& a, Args& v) { return a.add_option("--solvers", v.solvers, "the back ends to compare")->type_name("A,B,C"); }},
       {"set",
        [](App& a, Args& v) {
-         return a.add_option("--set", v.set, "override a value of the TOML; may stand several times")->type_name("KEY.PATH=VALUE")->allow_extra_args(false);
+         return a.add_option("--set", v.set, "override a value of the TOML; may stand several times")
+             ->type_name("KEY.PATH=VALUE")
+             ->allow_extra_args(false);
        }},
       {"initial",
-       [](App& a, Args& v) { return a.add_option("--initial", v.initial, "arm angles before the first row, rad")->type_name("A1,...,AN"); }},
+       [](App& a, Args& v) {
+         return a.add_option("--initial", v.initial, "arm angles before the first row, rad")->type_name("A1,...,AN");
+       }},
       {"cold", [](App& a, Args& v) { return a.add_flag("--cold", v.cold, "every row on its own: no previous angles, no rate"); }},
       {"tolerance",
        [](App& a, Args& v) { return a.add_option("--tolerance", v.tolerance, "where a solve ends")->type_name("X")->check(finite); }},
       {"max-iterations",
-       [](App& a, Args& v) { return a.add_option("--max-iterations", v.max_iterations, "where a solve gives up")->type_name("N")->check(count); }},
+       [](App& a, Args& v) {
+         return a.add_option("--max-iterations", v.max_iterations, "where a solve gives up")->type_name("N")->check(count);
+       }},
       {"time-limit",
-       [](App& a, Args& v) { return a.add_option("--time-limit", v.time_limit, "where a solve gives up, s")->type_name("S")->check(finite); }},
+       [](App& a, Args& v) {
+         return a.add_option("--time-limit", v.time_limit, "where a solve gives up, s")->type_name("S")->check(finite);
+       }},
       {"seed", [](App& a, Args& v) { return a.add_option("--seed", v.seed, "of random numbers")->type_name("N")->capture_default_str(); }},
       {"rows", [](App& a, Args& v) { return a.add_option("--rows", v.rows, "random rows of a vehicle")->type_name("N")->check(count); }},
-      {"degree", [](App& a, Args& v) { return a.add_option("--degree", v.degree, "of the polynomials")->type_name("N")->capture_default_str(); }},
+      {"degree",
+       [](App& a, Args& v) { return a.add_option("--degree", v.degree, "of the polynomials")->type_name("N")->capture_default_str(); }},
       {"constant", [](App& a, Args& v) { return a.add_flag("--constant", v.constant, "fit a constant term as well"); }},
       {"json", [](App& a, Args& v) { return a.add_flag("--json", v.json, "the result as one JSON object on stdout"); }},
       {"quiet", [](App& a, Args& v) { return a.add_flag("--quiet", v.quiet, "no log, no progress bar, no summary"); }},

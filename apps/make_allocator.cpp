@@ -10,9 +10,13 @@
 
 namespace tenon {
 
-std::string default_allocator() { return "pseudo-inverse"; }
+std::string default_allocator() {
+  return "pseudo-inverse";
+}
 
-std::vector<std::string> list_allocators() { return {"pseudo-inverse"}; }
+std::vector<std::string> list_allocators() {
+  return {"pseudo-inverse"};
+}
 
 std::unique_ptr<Allocator> make_allocator(const Vehicle& vehicle, const std::string& solver, const Options& options) {
   validate(options);

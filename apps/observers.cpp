@@ -10,7 +10,9 @@ namespace tenon {
 
 namespace {
 
-std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
+std::string number(double value) {
+  return std::isfinite(value) ? fmt::format("{}", value) : "null";
+}
 
 }  // namespace
 
@@ -18,15 +20,15 @@ std::string trace_line(const Iteration& it, long row) {
   return fmt::format(
       "{{{}\"index\":{},\"objective\":{},\"primal\":{},\"dual\":{},\"complementarity\":{},\"mu\":{},\"alpha_primal\":{},\"alpha_dual\":{},"
       "\"regularization\":{},\"trials\":{}}}\n",
-      row < 0 ? "" : fmt::format("\"row\":{},", row), it.index, number(it.objective), number(it.primal), number(it.dual), number(it.complementarity), number(it.mu), number(it.alpha_primal),
-      number(it.alpha_dual), number(it.regularization), it.trials);
+      row < 0 ? "" : fmt::format("\"row\":{},", row), it.index, number(it.objective), number(it.primal), number(it.dual),
+      number(it.complementarity), number(it.mu), number(it.alpha_primal), number(it.alpha_dual), number(it.regularization), it.trials);
 }
 
 std::string table_line(const Iteration& it) {
   std::string text;
   if (it.index == 0) {
-    text = fmt::format("{:>5}  {:>16}  {:>8}  {:>8}  {:>8}  {:>8}  {:>7}  {:>7}  {:>8}  {:>6}\n", "iter", "objective", "primal", "dual", "compl",
-                       "mu", "alpha_p", "alpha_d", "reg", "trials");
+    text = fmt::format("{:>5}  {:>16}  {:>8}  {:>8}  {:>8}  {:>8}  {:>7}  {:>7}  {:>8}  {:>6}\n", "iter", "objective", "primal", "dual",
+                       "compl", "mu", "alpha_p", "alpha_d", "reg", "trials");
   }
   return text + fmt::format("{:>5}  {:>16.9e}  {:>8.2e}  {:>8.2e}  {:>8.2e}  {:>8.2e}  {:>7.4f}  {:>7.4f}  {:>8.2e}  {:>6}\n", it.index,
                             it.objective, it.primal, it.dual, it.complementarity, it.mu, it.alpha_primal, it.alpha_dual, it.regularization,

@@ -35,8 +35,8 @@ void print_result(const Nlp& problem, const CatalogueEntry& entry, const Measure
   line("iterations", fmt::format("{}", result.iterations));
   line("residual", fmt::format("stationarity {:.2e}, primal {:.2e}, complementarity {:.2e}", result.residual.stationarity,
                                result.residual.primal, result.residual.complementarity));
-  line("evaluations", fmt::format("{} objective, {} gradient, {} constraints, {} Jacobian, {} Hessian", m.counts.objective, m.counts.gradient,
-                                  m.counts.constraints, m.counts.jacobian, m.counts.hessian));
+  line("evaluations", fmt::format("{} objective, {} gradient, {} constraints, {} Jacobian, {} Hessian", m.counts.objective,
+                                  m.counts.gradient, m.counts.constraints, m.counts.jacobian, m.counts.hessian));
   line("time", duration_text(m.time));
   if (result.status == Status::infeasible) {
     for (const Violation& v : violations(problem, m.point.x, tolerance)) {
@@ -63,8 +63,10 @@ int run_solve(const Arguments& arguments) {
   const Measurement m = measure(*problem, arguments.solver ? *arguments.solver : default_solver(), options, suggested_start(*problem), 0);
   if (!m.refusal.empty()) throw std::invalid_argument(m.refusal);
   observers.finish();
-  if (arguments.json) print(result_json(*problem, m, options.tolerance));
-  else if (!arguments.quiet) print_result(*problem, entry, m, options.tolerance);
+  if (arguments.json)
+    print(result_json(*problem, m, options.tolerance));
+  else if (!arguments.quiet)
+    print_result(*problem, entry, m, options.tolerance);
   if (interrupted()) return kInterrupted;
   return succeeded(m.result.status) ? kFinished : kNotSolved;
 }

@@ -17,7 +17,9 @@ namespace {
 
 constexpr std::size_t kBufferBytes = 1 << 16;
 
-bool is_standard_output(const std::string& path) { return path == "-"; }
+bool is_standard_output(const std::string& path) {
+  return path == "-";
+}
 
 bool is_written_directly(const std::string& path) {
   if (is_standard_output(path) || path.starts_with("/dev/")) return true;

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#define EXPECT_MESSAGE(statement, Type, part)                                      \
-  try {                                                                            \
-    statement;                                                                     \
-    ADD_FAILURE() << "nothing thrown";                                             \
-  } catch (const Type& error) {                                                    \
+#define EXPECT_MESSAGE(statement, Type, part)                                           \
+  try {                                                                                 \
+    statement;                                                                          \
+    ADD_FAILURE() << "nothing thrown";                                                  \
+  } catch (const Type& error) {                                                         \
     EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what(); \
   }

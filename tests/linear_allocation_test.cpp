@@ -24,7 +24,7 @@ Wrench random_wrench(const Vehicle& vehicle, std::mt19937_64& random) {
 TEST(LinearAllocation, MeetsEveryWrenchOfATiltingVehicle) {
   std::mt19937_64 random(3);
   for (const char* name : {"momav", "momav-bench", "tilt-quad"}) {
-    const Vehicle vehicle = load_vehicle(name, {"rotor.1.throttle=[0,1]"}).vehicle;
+    const Vehicle vehicle = load_vehicle(name).vehicle;
     const LinearAllocation linear(vehicle);
     EXPECT_EQ(linear.rank(), 6);
     EXPECT_TRUE(linear.unreachable_directions().empty());
@@ -33,7 +33,8 @@ TEST(LinearAllocation, MeetsEveryWrenchOfATiltingVehicle) {
     for (int k = 0; k < 1000; ++k) {
       const Wrench w = 0.6 * random_wrench(vehicle, random);
       linear.solve(w, zero, u, a);
-      if (name != std::string("momav-bench") || u.maxCoeff() <= 1) EXPECT_LT((linear.wrench(u, a) - w).lpNorm<Eigen::Infinity>(), 1e-12) << name;
+      if (u.maxCoeff() > 1) continue;  // a thrust map is continued straight beyond its range
+      EXPECT_LT((linear.wrench(u, a) - w).lpNorm<Eigen::Infinity>(), 1e-12) << name;
     }
   }
 }
@@ -112,7 +113,9 @@ TEST(PseudoInverse, KeepsThrottleAndRateLimitsAndReportsWhatThatCosts) {
     const Allocation& allocation = allocator.allocate(w, dt);
     EXPECT_GE(allocation.throttle.minCoeff(), 0);
     EXPECT_LE(allocation.throttle.maxCoeff(), 1);
-    if (k > 0) EXPECT_LE((allocation.angle - last).cwiseAbs().maxCoeff(), 2 * M_PI * dt * (1 + 1e-12));
+    if (k > 0) {
+      EXPECT_LE((allocation.angle - last).cwiseAbs().maxCoeff(), 2 * M_PI * dt * (1 + 1e-12));
+    }
     const LinearAllocation exact(vehicle);
     EXPECT_TRUE((exact.wrench(allocation.throttle, allocation.angle) - w).isApprox(allocation.error, 1e-9));
     EXPECT_EQ(allocation.status, allocation.residual < 1e-6 ? AllocationStatus::solved : AllocationStatus::best_effort);

@@ -20,7 +20,9 @@ spin = -1
 
 const std::vector<std::string> kKeys{"name", "mass", "list", "limits", "rotor"};
 
-Table root(const std::vector<std::string>& overrides = {}) { return Document(kText, "v.toml", overrides).root(kKeys); }
+Table root(const std::vector<std::string>& overrides = {}) {
+  return Document(kText, "v.toml", overrides).root(kKeys);
+}
 
 TEST(TomlDocument, ReadsWhatIsThere) {
   const Table table = root();
@@ -45,7 +47,8 @@ TEST(TomlDocument, SaysWhatIsWrongAndWhere) {
 
 TEST(TomlDocument, AnUnknownKeyNamesTheNearestKnownOne) {
   EXPECT_MESSAGE(Document("mas = 1", "v.toml").root(kKeys), InputError, "v.toml:1:1: unknown key 'mas'; the nearest known key is 'mass'");
-  EXPECT_MESSAGE(root().tables("rotor", {"spine"}), InputError, "v.toml:7:1: unknown key 'spin' in rotor.1; the nearest known key is 'spine'");
+  EXPECT_MESSAGE(root().tables("rotor", {"spine"}), InputError,
+                 "v.toml:7:1: unknown key 'spin' in rotor.1; the nearest known key is 'spine'");
 }
 
 TEST(TomlDocument, OverridesValuesAndCountsFromOne) {

@@ -73,7 +73,8 @@ TEST(VehicleFile, RefusesWhatMakesNoSense) {
 }
 
 TEST(VehicleFile, TheErrorStandsWhereTheValueDoes) {
-  const std::string text = "mass = 1\n[[rotor]]\nposition = [0, 0, 0]\naxis = [1, 0, 0]\nzero = [0, 0, 1]\nspin = 3\nthrust = [0, 1]\ntorque = [0, 1]\n";
+  const std::string text =
+      "mass = 1\n[[rotor]]\nposition = [0, 0, 0]\naxis = [1, 0, 0]\nzero = [0, 0, 1]\nspin = 3\nthrust = [0, 1]\ntorque = [0, 1]\n";
   EXPECT_MESSAGE(parse_vehicle(text + text.substr(9) + text.substr(9), "x.toml"), InputError, "x.toml:6:8: rotor 1: spin is 3");
 }
 

@@ -24,14 +24,16 @@ TEST(WrenchLog, ReadsTimesOrIntervals) {
 
 TEST(WrenchLog, TurnsTheWrenchIntoTheBody) {
   // The body is turned by 90 degrees about z: the world's x is the body's -y.
-  const auto rows = parse_wrench_log("t,Fx,Fy,Fz,Mx,My,Mz,qw,qx,qy,qz\n0,1,0,3,0,2,0,0.70710678118654757,0,0,0.70710678118654757\n", "a.csv");
+  const auto rows =
+      parse_wrench_log("t,Fx,Fy,Fz,Mx,My,Mz,qw,qx,qy,qz\n0,1,0,3,0,2,0,0.70710678118654757,0,0,0.70710678118654757\n", "a.csv");
   EXPECT_TRUE(rows[0].wrench.isApprox((Wrench() << 0, -1, 3, 2, 0, 0).finished(), 1e-15));
 }
 
 TEST(WrenchLog, RefusesWhatMakesNoSense) {
   const std::string head = "t,Fx,Fy,Fz,Mx,My,Mz\n";
   EXPECT_MESSAGE(parse_wrench_log(head + "1,0,0,0,0,0,0\n1,0,0,0,0,0,0\n", "a.csv"), InputError, "a.csv:3: t goes from 1 to 1 s");
-  EXPECT_MESSAGE(parse_wrench_log("dt,Fx,Fy,Fz,Mx,My,Mz\n-.1,0,0,0,0,0,0\n", "a.csv"), InputError, "a.csv:2: dt is -0.1 s (expected more than 0)");
+  EXPECT_MESSAGE(parse_wrench_log("dt,Fx,Fy,Fz,Mx,My,Mz\n-.1,0,0,0,0,0,0\n", "a.csv"), InputError,
+                 "a.csv:2: dt is -0.1 s (expected more than 0)");
   EXPECT_MESSAGE(parse_wrench_log("Fx,Fy,Fz,Mx,My,Mz\n0,0,0,0,0,0\n", "a.csv"), InputError, "neither column 't' nor 'dt'");
   EXPECT_MESSAGE(parse_wrench_log("t,u,v\n0,0,0\n", "a.csv"), InputError, "column 'Fx' is missing in 't,u,v'");
   EXPECT_MESSAGE(parse_wrench_log("t,Fx,Fy,Fz,Mx,My,Mz,qw,qx\n0,0,0,0,0,0,0,1,0\n", "a.csv"), InputError, "the quaternion lacks column");
