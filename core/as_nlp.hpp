@@ -41,7 +41,7 @@ class AsNlp final : public Nlp {
     if constexpr (requires(VectorNOf<P>& start) { problem_.initial_point(start); }) {
       VectorNOf<P> start;
       problem_.initial_point(start);
-      x = start.template cast<double>();
+      FixedN(x.data()) = start.template cast<double>();
     } else {
       x.setZero();
     }
@@ -62,13 +62,13 @@ class AsNlp final : public Nlp {
   void gradient(ConstVectorRef, Workspace& workspace, VectorRef gradient) const override {
     VectorNOf<P> out;
     problem_.gradient(fixed(workspace).x, fixed(workspace).workspace, out);
-    gradient = out.template cast<double>();
+    FixedN(gradient.data()) = out.template cast<double>();
   }
 
   void constraints(ConstVectorRef, Workspace& workspace, VectorRef values) const override {
     VectorMOf<P> out;
     problem_.constraints(fixed(workspace).x, fixed(workspace).workspace, out);
-    values = out.template cast<double>();
+    FixedM(values.data()) = out.template cast<double>();
   }
 
   void jacobian(ConstVectorRef, Workspace& workspace, std::span<double> values) const override {
@@ -108,6 +108,10 @@ class AsNlp final : public Nlp {
   static constexpr int kN = P::kVariables;
   static constexpr int kM = P::kConstraints;
   static constexpr bool kDenseHessian = std::is_base_of_v<Eigen::MatrixBase<HessianOf<P>>, HessianOf<P>>;
+
+  // Written at their fixed size: Eigen's loop over a length known only at run time would be longer, and GCC takes it for an overrun.
+  using FixedN = Eigen::Map<Eigen::Matrix<double, kN, 1>>;
+  using FixedM = Eigen::Map<Eigen::Matrix<double, kM, 1>>;
 
   struct FixedScratch final : Scratch {
     explicit FixedScratch(WorkspaceOf<P>&& made) : workspace(std::move(made)) {}

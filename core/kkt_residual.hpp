@@ -52,7 +52,8 @@ KktResidual kkt_residual(const BasicPoint<Scalar, N, M>& point, const BasicBound
   const auto n = point.x.size(), m = point.lambda.size();
 
   for (Eigen::Index j = 0; j < n; ++j) {
-    const Scalar stationarity = gradient[j] + jacobian.col(j).dot(point.lambda) + point.z[j];
+    const Scalar rows = m == 0 ? Scalar(0) : Scalar(jacobian.col(j).dot(point.lambda));  // Eigen's sparse dot asserts a length above 0
+    const Scalar stationarity = gradient[j] + rows + point.z[j];
     residual.stationarity = std::max<double>(residual.stationarity, std::isnan(stationarity) ? kInfinity<Scalar> : std::abs(stationarity));
     residual.primal = std::max<double>(residual.primal, detail::violation(point.x[j], bounds.x_lower[j], bounds.x_upper[j]));
     residual.complementarity = std::max<double>(

@@ -22,7 +22,7 @@ Vector signed_violation(const Vector& constraints, const Bounds& bounds);
 
 /// Whether x is a stationary point, within the box, of half the squared violation v of the rows, v not 0:
 ///
-///     | P(-J'v) | <= 1e-3 |J|'|v|  in every variable,  P: no component out of the box,  and  |v|_inf > 1e-6
+///     | P(-J'v) | <= max(1e-3 |J|'|v|, 1e-6 |v|_inf)  in every variable,  P: no component out of the box,  and  |v|_inf > 1e-6
 bool is_locally_infeasible(const Vector& x, const Bounds& bounds, const FirstOrder& here);
 
 }  // namespace tenon

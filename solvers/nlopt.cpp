@@ -1,10 +1,11 @@
 // Four local methods of NLopt, judged.
 //
-// NLopt returns no multipliers and stops on small steps, not on residuals. So its tolerances are set near the rounding, multipliers come from
-// least squares, and the verdict is the ruler's: `solved` as everywhere; `acceptable` also where the residual is within 1e-6 of the gradient's
-// size, because who compares objective values resolves x to the root of the rounding and no better; else a stop on small steps is a
-// numerical_failure (or infeasible, first_order.hpp). NLopt returns the lowest objective among points feasible within tolerance, which may be
-// an early one, or the start where none was: the ruler chooses between that and the last point whose gradient NLopt wanted.
+// NLopt returns no multipliers and stops on small steps, not on residuals. So its tolerances are set near the rounding, multipliers come
+// from least squares, and the verdict is the ruler's: `solved` as everywhere; `acceptable` also where the residual is within 1e-5 of the
+// gradient's size, because who compares objective values resolves x to the root of the rounding and no better; else a stop on small steps
+// is a numerical_failure (or infeasible, first_order.hpp). NLopt returns the lowest objective among points feasible within tolerance, which
+// may be an early one, or the start where none was: the ruler chooses between that and the last point whose gradient NLopt wanted.
+// MMA and CCSAQ want a start that satisfies the rows: from elsewhere they may run away.
 #include "tenon/solvers/nlopt.hpp"
 
 #include <algorithm>
@@ -31,7 +32,7 @@ constexpr Method kMma = {NloptMethod::mma, "nlopt-mma", "method of moving asympt
 constexpr Method kCcsaq = {NloptMethod::ccsaq, "nlopt-ccsaq", "conservative convex separable approximations, no equalities", false};
 constexpr Method kAuglag = {NloptMethod::auglag, "nlopt-auglag", "augmented Lagrangian over L-BFGS", true};
 
-constexpr double kResolved = 1e-6;  // residual per size of the gradient that a method without residuals can reach
+constexpr double kResolved = 1e-5;  // residual per size of the gradient that a method without residuals can reach
 
 class NloptSolver final : public Solver {
  public:

@@ -49,7 +49,7 @@ using Opt = std::unique_ptr<nlopt_opt_s, OptDeleter>;
 class Session {
  public:
   Session(NloptMethod method, const Nlp& problem, const Bounds& bounds, const Options& options)
-      : n_(problem.num_variables()), options_(options), bounds_(bounds), evaluate_(problem), c_(problem.num_constraints()),
+      : n_(problem.num_variables()), options_(options), bounds_(bounds), evaluate_(problem), rows_(problem.num_constraints()),
         jacobian_(problem.jacobian_pattern().zero_matrix()), opt_(make_opt(algorithm_of(method))) {
     for (int j = 0; j < problem.num_constraints(); ++j) {
       const double lower = bounds.c_lower[j], upper = bounds.c_upper[j];
@@ -63,7 +63,7 @@ class Session {
     nlopt_set_lower_bounds(opt_.get(), bounds.x_lower.data());
     nlopt_set_upper_bounds(opt_.get(), bounds.x_upper.data());
     nlopt_set_min_objective(opt_.get(), objective, this);
-    const std::vector<double> tolerances(2 * static_cast<std::size_t>(c_.size()), options.tolerance);
+    const std::vector<double> tolerances(2 * static_cast<std::size_t>(rows_.size()), options.tolerance);
     const auto size = [](const Sides& sides) { return static_cast<unsigned>(sides.list.size()); };
     if (size(equalities_) > 0) nlopt_add_equality_mconstraint(opt_.get(), size(equalities_), rows, &equalities_, tolerances.data());
     if (size(inequalities_) > 0) nlopt_add_inequality_mconstraint(opt_.get(), size(inequalities_), rows, &inequalities_, tolerances.data());
@@ -117,21 +117,33 @@ class Session {
     }
   }
 
+  /// The rows at x, evaluated once for objective, equalities, inequalities and observer together.
+  const Vector& constraints(const Eigen::Map<const Vector>& x) {
+    if (x_of_rows_.size() == 0 || x_of_rows_ != x) {
+      x_of_rows_ = x;
+      evaluate_.constraints(x_of_rows_, rows_);
+    }
+    return rows_;
+  }
+
+  /// +infinity where anything is not finite: all of NLopt's methods then try a shorter step.
   static double objective(unsigned n, const double* x_data, double* gradient_data, void* data) {
-    Session& run = *static_cast<Session*>(data);
+    Session& session = *static_cast<Session*>(data);
     const Eigen::Map<const Vector> x(x_data, n);
     double value = kInfinity<double>;
-    run.guarded([&] {
-      value = run.evaluate_.objective(x);
-      ++run.evaluations_;
-      bool finite = std::isfinite(value);
+    session.guarded([&] {
+      const double here = session.evaluate_.objective(x);
+      bool finite = std::isfinite(here) && session.constraints(x).allFinite();
       if (gradient_data != nullptr) {
         Eigen::Map<Vector> gradient(gradient_data, n);
-        run.evaluate_.gradient(x, gradient);
+        session.evaluate_.gradient(x, gradient);
         finite = finite && gradient.allFinite();
-        if (finite) run.last_iterate_ = x;
+        if (finite) session.last_iterate_ = x;
+        else gradient.setZero();
       }
-      return finite && run.report(x, value);
+      if (finite) value = here;
+      ++session.evaluations_;
+      return session.report(x, value);
     });
     return value;
   }
@@ -139,28 +151,31 @@ class Session {
   /// NLopt tells neither dual residual nor steps: those stay 0.
   bool report(const Eigen::Map<const Vector>& x, double value) {
     if (!options_.on_iteration) return true;
-    evaluate_.constraints(x, c_);
-    const double primal = c_.size() == 0 ? 0 : signed_violation(c_, bounds_).lpNorm<Eigen::Infinity>();
+    const double primal = rows_.size() == 0 ? 0 : signed_violation(constraints(x), bounds_).lpNorm<Eigen::Infinity>();
     stopped_ = !options_.on_iteration({.index = evaluations_ - 1, .objective = value, .primal = primal, .trials = 1});
     return !stopped_;
   }
 
-  /// Values (m) and, where asked for, gradients (m x n, row by row) of all equalities or all inequalities.
+  /// Values (m) and, where asked for, gradients (m x n, row by row) of all equalities or all inequalities. Rows that are not finite belong
+  /// to a point whose objective is +infinity: 0 keeps NLopt's arithmetic going.
   static void rows(unsigned m, double* values, unsigned n, const double* x_data, double* gradient_data, void* data) {
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     const Sides& sides = *static_cast<Sides*>(data);
-    Session& run = *sides.session;
+    Session& session = *sides.session;
     const Eigen::Map<const Vector> x(x_data, n);
-    run.guarded([&] {
-      run.evaluate_.constraints(x, run.c_);
-      for (unsigned k = 0; k < m; ++k) values[k] = sides.list[k].sign * (run.c_[sides.list[k].row] - sides.list[k].bound);
-      if (gradient_data == nullptr) return run.c_.allFinite();
+    session.guarded([&] {
+      const Vector& c = session.constraints(x);
+      for (unsigned k = 0; k < m; ++k) {
+        const Side& side = sides.list[k];
+        values[k] = std::isfinite(c[side.row]) ? side.sign * (c[side.row] - side.bound) : 0;
+      }
+      if (gradient_data == nullptr) return true;
 
-      run.evaluate_.jacobian(x, values_of(run.jacobian_));
-      const Eigen::MatrixXd dense = run.jacobian_;
+      session.evaluate_.jacobian(x, values_of(session.jacobian_));
+      const Eigen::MatrixXd dense = session.jacobian_;
       Eigen::Map<RowMajor> gradient(gradient_data, m, n);
       for (unsigned k = 0; k < m; ++k) gradient.row(k) = sides.list[k].sign * dense.row(sides.list[k].row);
-      return run.c_.allFinite() && dense.allFinite();
+      return dense.allFinite();
     });
   }
 
@@ -168,7 +183,7 @@ class Session {
   const Options& options_;
   const Bounds& bounds_;
   PreparedNlp evaluate_;
-  Vector c_;
+  Vector rows_, x_of_rows_;
   SparseMatrix jacobian_;
   Sides equalities_{this}, inequalities_{this};
   Opt opt_;

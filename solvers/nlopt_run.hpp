@@ -13,12 +13,12 @@ namespace tenon {
 enum class NloptMethod { slsqp, mma, ccsaq, auglag };
 
 enum class NloptEnd {
-  no_progress,      // small steps, rounding, or a subproblem that failed
-  evaluations,      // Options::max_iterations of them
-  time,             // Options::time_limit
-  unbounded,        // the objective fell below kNloptUnbounded
-  observer,         // Options::on_iteration said so
-  not_finite,       // a function or derivative was not finite: these methods cannot back off
+  no_progress,  // small steps, rounding, or a subproblem that failed
+  evaluations,  // Options::max_iterations of them
+  time,         // Options::time_limit
+  unbounded,    // the objective fell below kNloptUnbounded
+  observer,     // Options::on_iteration said so
+  not_finite,   // a Jacobian was not finite where objective and rows were
 };
 
 inline constexpr double kNloptUnbounded = -1e20;
