@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <optional>
+#include <stdexcept>
 
 #include "tenon/apps/allocation_summary.hpp"
 #include "tenon/apps/comma_list.hpp"
@@ -44,7 +45,8 @@ void write_row(CsvWriter& csv, double t, const Allocation& allocation) {
 /// Hands the vehicle's failures to the allocator when their time has come.
 class Failures {
  public:
-  explicit Failures(const Vehicle& vehicle) : vehicle_(vehicle), rotor_(vehicle.rotors.size(), false), servo_(vehicle.rotors.size(), false) {}
+  explicit Failures(const Vehicle& vehicle)
+      : vehicle_(vehicle), rotor_(vehicle.rotors.size(), false), servo_(vehicle.rotors.size(), false) {}
 
   void apply(double t, Allocator& allocator, bool quiet) {
     for (std::size_t i = 0; i < rotor_.size(); ++i) {
@@ -78,6 +80,7 @@ Options allocation_options(const Arguments& arguments, const SolverChoice& choic
 }  // namespace
 
 int run_allocate(const Arguments& arguments) {
+  if (arguments.wrenches.empty()) throw std::invalid_argument("allocate: nothing to allocate (expected --wrenches FILE.csv)");
   if (arguments.cold && arguments.initial) throw std::invalid_argument("--cold and --initial exclude one another (expected one of them)");
   const VehicleFile file = load_vehicle(arguments.names.front(), arguments.set);
   const Vehicle& vehicle = file.vehicle;
@@ -95,13 +98,15 @@ int run_allocate(const Arguments& arguments) {
 
   // Without --output the record itself goes to stdout, unless the summary does as JSON.
   std::optional<CsvWriter> csv;
-  if (!arguments.output.empty() || !arguments.json) csv.emplace(arguments.output.empty() ? "-" : arguments.output, column_names(vehicle.num_rotors()));
+  if (!arguments.output.empty() || !arguments.json)
+    csv.emplace(arguments.output.empty() ? "-" : arguments.output, column_names(vehicle.num_rotors()));
   AllocationSummary summary(vehicle, solver);
   Failures failures(vehicle);
   {
     Progress progress("allocate", std::ssize(log), arguments.quiet);
     for (std::size_t k = 0; k < log.size() && !interrupted(); ++k) {
       if (arguments.cold) allocator->reset();
+      observers.begin_row(static_cast<long>(k));
       failures.apply(log[k].t, *allocator, arguments.quiet);
       const Allocation& allocation = allocator->allocate(log[k].wrench, log[k].dt);
       if (csv) write_row(*csv, log[k].t, allocation);
@@ -110,13 +115,16 @@ int run_allocate(const Arguments& arguments) {
     }
   }
   if (interrupted()) {
-    if (csv) csv->file().path() == "-" ? void() : fmt::print(stderr, "tenon: interrupted, {} rows are in {}\n", csv->rows(), csv->file().partial_path());
+    if (csv && !arguments.output.empty())
+      fmt::print(stderr, "tenon: interrupted, {} rows are in {}\n", csv->rows(), csv->file().partial_path());
     return kInterrupted;
   }
   if (csv) csv->finish();
   observers.finish();
-  if (arguments.json) print(summary.json());
-  else if (!arguments.quiet) fmt::print(arguments.output.empty() ? stderr : stdout, "{}", summary.text());
+  if (arguments.json)
+    print(summary.json());
+  else if (!arguments.quiet)
+    fmt::print(arguments.output.empty() ? stderr : stdout, "{}", summary.text());
   return kFinished;
 }
 

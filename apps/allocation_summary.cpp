@@ -33,7 +33,8 @@ void AllocationSummary::add(const Wrench& asked, double dt, bool has_past, const
   last_angle_ = allocation.angle;
   effort_.push_back(allocation.throttle.squaredNorm());
   const double bound = has_bound_ ? linear_.effort_lower_bound(asked) : 0;
-  if (bound > 0 && allocation.status == AllocationStatus::solved) over_bound_.push_back(effort_.back() / bound - 1);
+  if (bound > 0 && allocation.status == AllocationStatus::solved)
+    over_bound_.push_back(std::max(0.0, effort_.back() / bound - 1));  // less is rounding
   seconds_.push_back(allocation.elapsed);
 }
 
@@ -46,8 +47,8 @@ std::string AllocationSummary::text() const {
   line("angle rate", fmt::format("at most {:.4f} rad/s", angle_rate_));
   line("effort sum u^2", fmt::format("mean {:.6f}", mean(effort_)));
   if (!over_bound_.empty()) {
-    line("above its bound", fmt::format("mean {:.3f} %, p99 {:.3f} %, at most {:.3f} %", 100 * mean(over_bound_), 100 * percentile(over_bound_, 0.99),
-                                        100 * percentile(over_bound_, 1)));
+    line("above its bound", fmt::format("mean {:.3f} %, p99 {:.3f} %, at most {:.3f} %", 100 * mean(over_bound_),
+                                        100 * percentile(over_bound_, 0.99), 100 * percentile(over_bound_, 1)));
   }
   line("residual", fmt::format("at most {:.2e}", residual_));
   line("iterations", fmt::format("{:.2f} per row", static_cast<double>(iterations_) / static_cast<double>(std::max(1L, rows_))));
@@ -64,7 +65,9 @@ Json AllocationSummary::json() const {
   json.set("throttle", Json::object().set("min", throttle_lowest_).set("max", throttle_highest_));
   json.set("angle_rate_max", angle_rate_).set("effort_mean", mean(effort_));
   if (!over_bound_.empty()) {
-    json.set("effort_over_bound", Json::object().set("mean", mean(over_bound_)).set("p99", percentile(over_bound_, 0.99)).set("max", percentile(over_bound_, 1)));
+    json.set(
+        "effort_over_bound",
+        Json::object().set("mean", mean(over_bound_)).set("p99", percentile(over_bound_, 0.99)).set("max", percentile(over_bound_, 1)));
   }
   json.set("residual_max", residual_).set("iterations", iterations_);
   json.set("time_s", Json::object().set("median", median(seconds_)).set("p99", percentile(seconds_, 0.99)));

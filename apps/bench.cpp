@@ -24,9 +24,8 @@ std::vector<Benchmark> chosen_benchmarks(const std::string& prefix) {
   for (const Benchmark& row : rows) names.push_back(row.name);
   std::erase_if(rows, [&](const Benchmark& row) { return !row.name.starts_with(prefix); });
   if (rows.empty()) {
-    throw std::invalid_argument(
-        fmt::format("bench: no row begins with '{}', the nearest is '{}' (expected the beginning of one of {})", prefix, nearest_name(prefix, names),
-                    fmt::join(names, ", ")));
+    throw std::invalid_argument(fmt::format("bench: no row begins with '{}', the nearest is '{}' (expected the beginning of one of {})",
+                                            prefix, nearest_name(prefix, names), fmt::join(names, ", ")));
   }
   return rows;
 }
@@ -44,7 +43,8 @@ int run_bench(const Arguments& arguments) {
       BenchmarkRun run;
       rows[k].run(run);
       const double middle = median(run.seconds), p99 = percentile(run.seconds, 0.99);
-      table.add({rows[k].name, duration_text(middle), duration_text(p99), fmt::format("{}", run.seconds.size()), fmt::format("{}", fmt::join(run.notes, ", "))});
+      table.add({rows[k].name, duration_text(middle), duration_text(p99), fmt::format("{}", run.seconds.size()),
+                 fmt::format("{}", fmt::join(run.notes, ", "))});
       list.push(Json::object()
                     .set("name", rows[k].name)
                     .set("median_s", middle)
@@ -67,7 +67,8 @@ int run_bench(const Arguments& arguments) {
               .set("benchmarks", list));
     return kFinished;
   }
-  fmt::print("{}\n{}, {} cores; {}, {}\n{}\n", table.text(), machine.cpu, machine.cores, machine.compiler, machine.flags, machine.libraries);
+  fmt::print("{}\n{}, {} cores; {}, {}\n{}\n", table.text(), machine.cpu, machine.cores, machine.compiler, machine.flags,
+             machine.libraries);
   return kFinished;
 }
 

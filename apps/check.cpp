@@ -18,7 +18,9 @@ namespace {
 constexpr double kDerivativeTolerance = 1e-6;
 constexpr int kRandomPoints = 5;
 
-double within(double value, double lower, double upper) { return std::min(std::max(value, lower), upper); }
+double within(double value, double lower, double upper) {
+  return std::min(std::max(value, lower), upper);
+}
 
 /// Points about the start, within the bounds.
 Vector random_point(const Vector& start, const Bounds& bounds, std::mt19937_64& random) {
@@ -95,7 +97,8 @@ int run_check(const Arguments& arguments) {
              jacobian.nonzeros(), static_cast<long>(n) * m);
   fmt::print("  Hessian    relative error {:.1e}, {}; {} of {} entries of the lower triangle\n", report.hessian_error,
              verdict(report.hessian_error), hessian.nonzeros(), static_cast<long>(n) * (n + 1) / 2);
-  fmt::print("  bounds     in order; the start is {}\n", outside(start, bounds) > 0 ? fmt::format("{:.3g} outside", outside(start, bounds)) : "within");
+  fmt::print("  bounds     in order; the start is {}\n",
+             outside(start, bounds) > 0 ? fmt::format("{:.3g} outside", outside(start, bounds)) : "within");
   if (!report.finite) fmt::print("  some function or derivative is not finite at a point that was looked at\n");
   for (const DerivativeError& e : report.worst) {
     fmt::print("  {} {} by {}: {:.9g}, difference {:.9g}\n", e.what, e.row, e.variable, e.analytic, e.difference);

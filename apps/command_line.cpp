@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <memory>
 #include <stdexcept>
 
 #include "tenon/core/nearest_name.hpp"
@@ -19,31 +20,40 @@ namespace {
 const std::map<std::string, std::function<CLI::Option*(CLI::App&, Arguments&)>>& flags() {
   using App = CLI::App;
   using Args = Arguments;
-  static const CLI::Validator finite([](std::string& text) { return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : "not finite"; },
-                                     "");
-  static const CLI::Range count(0, 1 << 30);
+  static const CLI::Validator finite(
+      [](std::string& text) { return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : text + " is not finite"; }, "");
+  static const CLI::Validator count = CLI::Range(0, 1 << 30).description("");
   static const std::map<std::string, std::function<CLI::Option*(App&, Args&)>> table{
-      {"wrenches", [](App& a, Args& v) { return a.add_option("--wrenches", v.wrenches, "the wrench log")->type_name("FILE.csv")->required(); }},
+      {"wrenches", [](App& a, Args& v) { return a.add_option("--wrenches", v.wrenches, "the wrench log")->type_name("FILE.csv"); }},
       {"output", [](App& a, Args& v) { return a.add_option("--output", v.output, "where the record goes")->type_name("FILE.csv"); }},
       {"trace", [](App& a, Args& v) { return a.add_option("--trace", v.trace, "one line per solver iteration")->type_name("FILE.jsonl"); }},
       {"solver", [](App& a, Args& v) { return a.add_option("--solver", v.solver, "the back end")->type_name("NAME"); }},
       {"solvers", [](App& a, Args& v) { return a.add_option("--solvers", v.solvers, "the back ends to compare")->type_name("A,B,C"); }},
       {"set",
        [](App& a, Args& v) {
-         return a.add_option("--set", v.set, "override a value of the TOML; may stand several times")->type_name("KEY.PATH=VALUE")->allow_extra_args(false);
+         return a.add_option("--set", v.set, "override a value of the TOML; may stand several times")
+             ->type_name("KEY.PATH=VALUE")
+             ->allow_extra_args(false);
        }},
       {"initial",
-       [](App& a, Args& v) { return a.add_option("--initial", v.initial, "arm angles before the first row, rad")->type_name("A1,...,AN"); }},
+       [](App& a, Args& v) {
+         return a.add_option("--initial", v.initial, "arm angles before the first row, rad")->type_name("A1,...,AN");
+       }},
       {"cold", [](App& a, Args& v) { return a.add_flag("--cold", v.cold, "every row on its own: no previous angles, no rate"); }},
       {"tolerance",
        [](App& a, Args& v) { return a.add_option("--tolerance", v.tolerance, "where a solve ends")->type_name("X")->check(finite); }},
       {"max-iterations",
-       [](App& a, Args& v) { return a.add_option("--max-iterations", v.max_iterations, "where a solve gives up")->type_name("N")->check(count); }},
+       [](App& a, Args& v) {
+         return a.add_option("--max-iterations", v.max_iterations, "where a solve gives up")->type_name("N")->check(count);
+       }},
       {"time-limit",
-       [](App& a, Args& v) { return a.add_option("--time-limit", v.time_limit, "where a solve gives up, s")->type_name("S")->check(finite); }},
+       [](App& a, Args& v) {
+         return a.add_option("--time-limit", v.time_limit, "where a solve gives up, s")->type_name("S")->check(finite);
+       }},
       {"seed", [](App& a, Args& v) { return a.add_option("--seed", v.seed, "of random numbers")->type_name("N")->capture_default_str(); }},
       {"rows", [](App& a, Args& v) { return a.add_option("--rows", v.rows, "random rows of a vehicle")->type_name("N")->check(count); }},
-      {"degree", [](App& a, Args& v) { return a.add_option("--degree", v.degree, "of the polynomials")->type_name("N")->capture_default_str(); }},
+      {"degree",
+       [](App& a, Args& v) { return a.add_option("--degree", v.degree, "of the polynomials")->type_name("N")->capture_default_str(); }},
       {"constant", [](App& a, Args& v) { return a.add_flag("--constant", v.constant, "fit a constant term as well"); }},
       {"json", [](App& a, Args& v) { return a.add_flag("--json", v.json, "the result as one JSON object on stdout"); }},
       {"quiet", [](App& a, Args& v) { return a.add_flag("--quiet", v.quiet, "no log, no progress bar, no summary"); }},
@@ -52,13 +62,21 @@ const std::map<std::string, std::function<CLI::Option*(CLI::App&, Arguments&)>>&
   return table;
 }
 
+/// Help without the machinery's words: `tenon allocate VEHICLE [flags]`.
+class HelpText : public CLI::Formatter {
+ public:
+  explicit HelpText(std::string usage) : usage_(std::move(usage)) {}
+  std::string make_usage(const CLI::App*, std::string) const override { return "usage: " + usage_ + "\n"; }
+  std::string make_positionals(const CLI::App*) const override { return ""; }
+
+ private:
+  std::string usage_;
+};
+
 void add_verb(CLI::App& app, const Verb& verb, Arguments& arguments) {
   CLI::App* command = app.add_subcommand(verb.name, verb.description);
-  if (verb.max_operands != 0) {
-    CLI::Option* operands = command->add_option("names", arguments.names, "")->type_name(verb.operands);
-    operands->expected(verb.min_operands, verb.max_operands < 0 ? 1 << 20 : verb.max_operands);
-    if (verb.min_operands > 0) operands->required();
-  }
+  command->formatter(std::make_shared<HelpText>(fmt::format("tenon {} {} [flags]", verb.name, verb.operands)));
+  command->add_option("operands", arguments.names);  // counted afterwards, so that a mistyped flag is what shows first
   for (const std::string& flag : verb.flags) flags().at(flag)(*command, arguments);
 }
 
@@ -76,12 +94,16 @@ const Verb* find_verb(const std::string& name) {
       fmt::format("unknown verb '{}', the nearest is '{}' (expected one of {})", name, nearest_name(name, names), fmt::join(names, ", ")));
 }
 
-/// A word that no flag or operand took.
-[[noreturn]] void reject_extra(const Verb& verb, const std::string& word) {
-  if (!word.starts_with("-")) {
-    throw std::invalid_argument(
-        fmt::format("{}: '{}' is one word too many (expected {})", verb.name, word, verb.operands.empty() ? "none" : verb.operands));
+void check_operands(const Verb& verb, const std::vector<std::string>& names) {
+  const int count = static_cast<int>(names.size());
+  if (count < verb.min_operands) throw std::invalid_argument(fmt::format("{}: nothing named (expected {})", verb.name, verb.operands));
+  if (verb.max_operands >= 0 && count > verb.max_operands) {
+    throw std::invalid_argument(fmt::format("{}: '{}' is one word too many (expected {})", verb.name,
+                                            names[static_cast<std::size_t>(verb.max_operands)], verb.operands));
   }
+}
+
+[[noreturn]] void reject_flag(const Verb& verb, const std::string& word) {
   std::vector<std::string> names;
   for (const std::string& flag : verb.flags) names.push_back("--" + flag);
   names.emplace_back("--help");
@@ -95,7 +117,7 @@ const Verb* find_verb(const std::string& name) {
 std::optional<Invocation> read_command_line(int argc, char** argv) {
   CLI::App app("Nonlinear optimisation and model-predictive control for wrench allocation and contact-aware assembly.", "tenon");
   app.set_version_flag("--version", "tenon " TENON_VERSION);
-  app.require_subcommand(1);
+  app.formatter(std::make_shared<HelpText>("tenon VERB ... ; tenon VERB --help tells more of one"));
   Invocation invocation;
   for (const Verb& verb : verbs()) add_verb(app, verb, invocation.arguments);
 
@@ -111,10 +133,15 @@ std::optional<Invocation> read_command_line(int argc, char** argv) {
   } catch (const CLI::ExtrasError&) {
     const std::vector<std::string> extras = app.remaining(true);
     if (invocation.verb == nullptr) throw std::invalid_argument("unknown flag '" + first + "' (expected tenon VERB ..., see tenon --help)");
-    reject_extra(*invocation.verb, extras.empty() ? "" : extras.front());
+    reject_flag(*invocation.verb, extras.empty() ? "" : extras.front());
+  } catch (const CLI::ConversionError& error) {
+    const std::string what = error.what();
+    throw std::invalid_argument(fmt::format("{}: {} makes no sense (expected a number)", first, what.substr(what.find("--"))));
   } catch (const CLI::ParseError& error) {
-    throw std::invalid_argument((invocation.verb == nullptr ? "" : invocation.verb->name + ": ") + error.what());
+    throw std::invalid_argument(first + ": " + error.what());
   }
+  if (invocation.verb == nullptr) reject_verb(first);
+  check_operands(*invocation.verb, invocation.arguments.names);
   return invocation;
 }
 

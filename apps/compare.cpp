@@ -55,10 +55,11 @@ std::vector<SolverDescription> chosen_solvers(const Arguments& arguments) {
   for (const std::string& name : split_list(*arguments.solvers)) {
     const auto at = std::find_if(known.begin(), known.end(), [&](const SolverDescription& s) { return s.name == name; });
     if (at == known.end()) {
-      throw std::invalid_argument(fmt::format("unknown solver '{}', the nearest is '{}' (expected one of {})", name, nearest_name(name, names),
-                                              fmt::join(names, ", ")));
+      throw std::invalid_argument(fmt::format("unknown solver '{}', the nearest is '{}' (expected one of {})", name,
+                                              nearest_name(name, names), fmt::join(names, ", ")));
     }
-    if (!at->available) throw std::invalid_argument(fmt::format("solver '{}' is not available: its library was absent when this was built", name));
+    if (!at->available)
+      throw std::invalid_argument(fmt::format("solver '{}' is not available: its library was absent when this was built", name));
     chosen.push_back(*at);
   }
   return chosen;
@@ -103,13 +104,20 @@ int run_compare(const Arguments& arguments) {
     for (const SolverDescription& s : solvers) {
       used.push(Json::object().set("name", s.name).set("description", s.description).set("options", s.options));
     }
-    print(Json::object().set("schema", 1).set("tolerance", options.tolerance).set("timed_runs", kTimedRuns).set("solvers", used).set("results", rows));
+    print(Json::object()
+              .set("schema", 1)
+              .set("tolerance", options.tolerance)
+              .set("timed_runs", kTimedRuns)
+              .set("solvers", used)
+              .set("results", rows));
     return kFinished;
   }
   fmt::print("{}\n", table.text());
-  fmt::print("evaluations: objective/gradient/constraints/Jacobian/Hessian of one solve; residual: the largest of the unscaled KKT residual\n");
+  fmt::print(
+      "evaluations: objective/gradient/constraints/Jacobian/Hessian of one solve; residual: the largest of the unscaled KKT residual\n");
   fmt::print("time: the solve alone, median of {}; tolerance {} for all, printing off\n", kTimedRuns, options.tolerance);
-  for (const SolverDescription& s : solvers) fmt::print("{}: {}; {}\n", s.name, s.description, s.options.empty() ? "no further options" : s.options);
+  for (const SolverDescription& s : solvers)
+    fmt::print("{}: {}; {}\n", s.name, s.description, s.options.empty() ? "no further options" : s.options);
   for (const std::string& refusal : refusals) fmt::print("{}\n", refusal);
   return kFinished;
 }

@@ -6,7 +6,8 @@
 namespace tenon {
 
 int compare_vehicle(const std::string& vehicle, const Arguments&) {
-  throw std::invalid_argument("compare: '" + vehicle + "' is a vehicle, whose rows cannot be compared yet (expected a problem of `tenon list problems`)");
+  throw std::invalid_argument("compare: '" + vehicle +
+                              "' is a vehicle, whose rows cannot be compared yet (expected a problem of `tenon list problems`)");
 }
 
 }  // namespace tenon

@@ -8,7 +8,9 @@ namespace {
 
 volatile std::sig_atomic_t signal_seen = 0;
 
-void note_signal(int) { signal_seen = 1; }
+void note_signal(int) {
+  signal_seen = 1;
+}
 
 }  // namespace
 
@@ -20,6 +22,8 @@ void watch_for_interrupts() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
-bool interrupted() { return signal_seen != 0; }
+bool interrupted() {
+  return signal_seen != 0;
+}
 
 }  // namespace tenon

@@ -50,7 +50,9 @@ Json& Json::push(const Json& value) {
   return *this;
 }
 
-std::string Json::text() const { return value_->dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n"; }
+std::string Json::text() const {
+  return value_->dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
 
 void print(const Json& json) {
   const std::string text = json.text();

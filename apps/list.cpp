@@ -46,7 +46,9 @@ std::vector<Named> solvers() {
   return list;
 }
 
-std::vector<Named> none() { return {}; }
+std::vector<Named> none() {
+  return {};
+}
 
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> table{{"problems", &problems}, {"vehicles", &vehicles}, {"missions", &none},
@@ -62,7 +64,8 @@ void print_kind(const Kind& kind) {
   }
   fmt::print("{}:\n", kind.name);
   Table table({"", "", ""});
-  for (const Named& entry : entries) table.add({"", entry.name, entry.available ? entry.description : "(not available) " + entry.description});
+  for (const Named& entry : entries)
+    table.add({"", entry.name, entry.available ? entry.description : "(not available) " + entry.description});
   const std::string text = table.text();
   fmt::print("{}", text.substr(text.find('\n') + 1));
 }

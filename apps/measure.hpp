@@ -12,11 +12,11 @@ namespace tenon {
 
 struct Measurement {
   std::string solver;
-  std::string refusal;      // why the back end does not take the problem; all that follows is then void
-  Result result;            // of the counted solve
+  std::string refusal;  // why the back end does not take the problem; all that follows is then void
+  Result result;        // of the counted solve
   EvaluationCounts counts;
-  Point point;              // where it ended
-  double time = 0;          // s, median of the timed solves, which nothing counts or watches
+  Point point;      // where it ended
+  double time = 0;  // s, median of the timed solves, which nothing counts or watches
 };
 
 /// Solves once counted, from `start`, then `timed_runs` times for the clock alone. Throws std::invalid_argument for an unknown solver.

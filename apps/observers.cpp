@@ -10,23 +10,25 @@ namespace tenon {
 
 namespace {
 
-std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
+std::string number(double value) {
+  return std::isfinite(value) ? fmt::format("{}", value) : "null";
+}
 
 }  // namespace
 
-std::string trace_line(const Iteration& it) {
+std::string trace_line(const Iteration& it, long row) {
   return fmt::format(
-      "{{\"index\":{},\"objective\":{},\"primal\":{},\"dual\":{},\"complementarity\":{},\"mu\":{},\"alpha_primal\":{},\"alpha_dual\":{},"
+      "{{{}\"index\":{},\"objective\":{},\"primal\":{},\"dual\":{},\"complementarity\":{},\"mu\":{},\"alpha_primal\":{},\"alpha_dual\":{},"
       "\"regularization\":{},\"trials\":{}}}\n",
-      it.index, number(it.objective), number(it.primal), number(it.dual), number(it.complementarity), number(it.mu), number(it.alpha_primal),
-      number(it.alpha_dual), number(it.regularization), it.trials);
+      row < 0 ? "" : fmt::format("\"row\":{},", row), it.index, number(it.objective), number(it.primal), number(it.dual),
+      number(it.complementarity), number(it.mu), number(it.alpha_primal), number(it.alpha_dual), number(it.regularization), it.trials);
 }
 
 std::string table_line(const Iteration& it) {
   std::string text;
   if (it.index == 0) {
-    text = fmt::format("{:>5}  {:>16}  {:>8}  {:>8}  {:>8}  {:>8}  {:>7}  {:>7}  {:>8}  {:>6}\n", "iter", "objective", "primal", "dual", "compl",
-                       "mu", "alpha_p", "alpha_d", "reg", "trials");
+    text = fmt::format("{:>5}  {:>16}  {:>8}  {:>8}  {:>8}  {:>8}  {:>7}  {:>7}  {:>8}  {:>6}\n", "iter", "objective", "primal", "dual",
+                       "compl", "mu", "alpha_p", "alpha_d", "reg", "trials");
   }
   return text + fmt::format("{:>5}  {:>16.9e}  {:>8.2e}  {:>8.2e}  {:>8.2e}  {:>8.2e}  {:>7.4f}  {:>7.4f}  {:>8.2e}  {:>6}\n", it.index,
                             it.objective, it.primal, it.dual, it.complementarity, it.mu, it.alpha_primal, it.alpha_dual, it.regularization,
@@ -41,7 +43,7 @@ std::function<bool(const Iteration&)> Observers::callback() {
   return [this](const Iteration& iteration) {
     if (verbose_) fmt::print(stderr, "{}", table_line(iteration));
     try {
-      if (trace_) trace_->append(trace_line(iteration));
+      if (trace_) trace_->append(trace_line(iteration, row_));
     } catch (const OutputError&) {  // must not cross a library's own loop
       failure_ = std::current_exception();
     }

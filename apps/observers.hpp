@@ -12,8 +12,8 @@
 
 namespace tenon {
 
-/// One JSON object and a newline: a line of a trace.
-std::string trace_line(const Iteration& iteration);
+/// One JSON object and a newline: a line of a trace, with the row it belongs to where that is not negative.
+std::string trace_line(const Iteration& iteration, long row = -1);
 
 /// One line of the iteration table; index 0 brings the header.
 std::string table_line(const Iteration& iteration);
@@ -27,11 +27,14 @@ class Observers {
   bool wanted() const { return verbose_ || trace_ != nullptr; }
   /// For Options::on_iteration; refers to this. Asks the solver to stop once the user interrupts.
   std::function<bool(const Iteration&)> callback();
+  /// The iterations that follow belong to this row of a log, from 0.
+  void begin_row(long row) { row_ = row; }
   /// Closes the trace. Throws OutputError.
   void finish();
 
  private:
   bool verbose_;
+  long row_ = -1;
   std::unique_ptr<OutputFile> trace_;
   std::exception_ptr failure_;  // of writing the trace; thrown by finish()
 };

@@ -18,7 +18,8 @@ std::vector<Violation> violations(const Nlp& problem, const Vector& x, double to
 Json residual_json(const KktResidual& residual);
 Json evaluations_json(const EvaluationCounts& counts);
 
-/// schema, problem, solver, status, objective, iterations, time_s, residual, evaluations, x, lambda, z; infeasible_constraints where they hurt.
+/// schema, problem, solver, status, objective, iterations, time_s, residual, evaluations, x, lambda, z; infeasible_constraints where they
+/// hurt.
 Json result_json(const Nlp& problem, const Measurement& measurement, double tolerance);
 
 }  // namespace tenon

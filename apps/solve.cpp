@@ -1,19 +1,30 @@
 // tenon solve PROBLEM: one nonlinear program, from its own starting point.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <stdexcept>
+
 #include "tenon/apps/interrupt.hpp"
 #include "tenon/apps/observers.hpp"
 #include "tenon/apps/result_json.hpp"
 #include "tenon/apps/table.hpp"
 #include "tenon/apps/verb.hpp"
 #include "tenon/problems/catalogue.hpp"
+#include "tenon/solvers/make_solver.hpp"
 
 namespace tenon {
 
 namespace {
 
-constexpr const char* kDefaultSolver = "newton-kkt";
 constexpr int kVariablesShown = 20;
+
+/// The first back end that is there: tenon's own comes first in the list.
+std::string default_solver() {
+  for (const SolverDescription& s : list_solvers()) {
+    if (s.available) return s.name;
+  }
+  throw std::invalid_argument("no solver is available (expected a build with at least one back end)");
+}
 
 void print_result(const Nlp& problem, const CatalogueEntry& entry, const Measurement& m, double tolerance) {
   const Result& result = m.result;
@@ -24,8 +35,8 @@ void print_result(const Nlp& problem, const CatalogueEntry& entry, const Measure
   line("iterations", fmt::format("{}", result.iterations));
   line("residual", fmt::format("stationarity {:.2e}, primal {:.2e}, complementarity {:.2e}", result.residual.stationarity,
                                result.residual.primal, result.residual.complementarity));
-  line("evaluations", fmt::format("{} objective, {} gradient, {} constraints, {} Jacobian, {} Hessian", m.counts.objective, m.counts.gradient,
-                                  m.counts.constraints, m.counts.jacobian, m.counts.hessian));
+  line("evaluations", fmt::format("{} objective, {} gradient, {} constraints, {} Jacobian, {} Hessian", m.counts.objective,
+                                  m.counts.gradient, m.counts.constraints, m.counts.jacobian, m.counts.hessian));
   line("time", duration_text(m.time));
   if (result.status == Status::infeasible) {
     for (const Violation& v : violations(problem, m.point.x, tolerance)) {
@@ -49,11 +60,13 @@ int run_solve(const Arguments& arguments) {
   Options options = arguments.options();
   Observers observers(arguments);
   options.on_iteration = observers.callback();
-  const Measurement m = measure(*problem, arguments.solver.value_or(kDefaultSolver), options, suggested_start(*problem), 0);
+  const Measurement m = measure(*problem, arguments.solver ? *arguments.solver : default_solver(), options, suggested_start(*problem), 0);
   if (!m.refusal.empty()) throw std::invalid_argument(m.refusal);
   observers.finish();
-  if (arguments.json) print(result_json(*problem, m, options.tolerance));
-  else if (!arguments.quiet) print_result(*problem, entry, m, options.tolerance);
+  if (arguments.json)
+    print(result_json(*problem, m, options.tolerance));
+  else if (!arguments.quiet)
+    print_result(*problem, entry, m, options.tolerance);
   if (interrupted()) return kInterrupted;
   return succeeded(m.result.status) ? kFinished : kNotSolved;
 }

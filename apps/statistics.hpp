@@ -16,7 +16,9 @@ inline double percentile(std::vector<double> sample, double share) {
   return *at;
 }
 
-inline double median(const std::vector<double>& sample) { return percentile(sample, 0.5); }
+inline double median(const std::vector<double>& sample) {
+  return percentile(sample, 0.5);
+}
 
 inline double mean(const std::vector<double>& sample) {
   double sum = 0;

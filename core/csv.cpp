@@ -66,7 +66,8 @@ std::vector<std::size_t> chosen_columns(const std::vector<Cell>& header, int lin
   for (const Cell& cell : header) {
     const std::string name(cell.text);
     if (name.empty()) throw InputError({table.file, line, cell.column}, "a column without a name", "a header line of column names");
-    if (!seen.insert(name).second) throw InputError({table.file, line, cell.column}, "column '" + name + "' stands twice", "each name once");
+    if (!seen.insert(name).second)
+      throw InputError({table.file, line, cell.column}, "column '" + name + "' stands twice", "each name once");
     names.push_back(name);
   }
   for (const std::string& name : wanted.required) {
@@ -137,7 +138,9 @@ CsvTable parse_csv(std::string_view text, const std::string& file, const CsvColu
   return table;
 }
 
-CsvTable read_csv(const std::string& file, const CsvColumns& columns) { return parse_csv(read_file(file), file, columns); }
+CsvTable read_csv(const std::string& file, const CsvColumns& columns) {
+  return parse_csv(read_file(file), file, columns);
+}
 
 CsvWriter::CsvWriter(std::string path, const std::vector<std::string>& names) : file_(std::move(path)), width_(names.size()) {
   file_.append(joined(names) + "\n");

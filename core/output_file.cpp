@@ -17,7 +17,9 @@ namespace {
 
 constexpr std::size_t kBufferBytes = 1 << 16;
 
-bool is_standard_output(const std::string& path) { return path == "-"; }
+bool is_standard_output(const std::string& path) {
+  return path == "-";
+}
 
 bool is_written_directly(const std::string& path) {
   if (is_standard_output(path) || path.starts_with("/dev/")) return true;
@@ -54,10 +56,13 @@ OutputFile::~OutputFile() {
     flush();
   } catch (const OutputError&) {
   }
-  if (descriptor_ >= 0) ::close(descriptor_);
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
+  if (!is_started_ && partial_path_ != path_) std::remove(partial_path_.c_str());
 }
 
 void OutputFile::append(std::string_view record) {
+  is_started_ = true;
   buffer_.append(record);
   if (buffer_.size() >= kBufferBytes) flush();
 }

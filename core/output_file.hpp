@@ -20,7 +20,7 @@ class OutputFile {
  public:
   /// Opens FILE.partial. Throws InputError where the folder is not there or FILE is one, OutputError where it cannot be opened.
   explicit OutputFile(std::string path);
-  /// Flushes what is complete, without a word where that fails; leaves FILE.partial unless finish() was called.
+  /// Flushes what is complete, without a word where that fails. Unless finish() was called FILE.partial stays, where it has any record.
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -41,6 +41,7 @@ class OutputFile {
 
   std::string path_, partial_path_;
   int descriptor_ = -1;
+  bool is_started_ = false;
   long written_ = 0;    // bytes of complete records in the file
   std::string buffer_;  // complete records not yet written
 };

@@ -1,9 +1,10 @@
 // The linear solution alone, on random orientations: the floor under every allocation.
+#include "tenon/problems/allocation/linear_allocation.hpp"
+
 #include <cmath>
 #include <random>
 
 #include "tenon/apps/benchmark/benchmark.hpp"
-#include "tenon/problems/allocation/linear_allocation.hpp"
 #include "tenon/problems/allocation/vehicle_file.hpp"
 
 namespace tenon {

@@ -6,11 +6,11 @@
 namespace tenon {
 
 struct Machine {
-  std::string cpu;       // model name
-  int cores = 0;         // that the system shows
-  std::string compiler;  // name and version
-  std::string flags;     // instruction set and build type
-  std::string libraries; // with versions
+  std::string cpu;        // model name
+  int cores = 0;          // that the system shows
+  std::string compiler;   // name and version
+  std::string flags;      // instruction set and build type
+  std::string libraries;  // with versions
 };
 
 Machine this_machine();

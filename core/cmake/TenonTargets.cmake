@@ -18,6 +18,9 @@ file(CREATE_LINK ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/include/tenon SYMBO
 # Flags of our own code, never of those who link to it.
 add_library(tenon-flags INTERFACE)
 target_compile_options(tenon-flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  target_compile_options(tenon-flags INTERFACE -Wno-restrict)  # gcc bug 105651: wrong for "text" + std::string
+endif()
 if(TENON_ARCH)
   target_compile_options(tenon-flags INTERFACE -march=${TENON_ARCH})
 endif()

@@ -5,10 +5,12 @@
 #include <set>
 #include <stdexcept>
 
-#include "tenon/core/eigen.hpp"
 #include "tenon/problems/allocation/throttle_map.hpp"
 
+// clang-format off: Eigen's own headers come after the one that pins its alignment
+#include "tenon/core/eigen.hpp"
 #include <Eigen/QR>
+// clang-format on
 
 namespace tenon {
 

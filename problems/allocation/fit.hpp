@@ -14,7 +14,7 @@ struct PolynomialFit {
   std::vector<double> coefficients;  // ascending, degree + 1 of them; the first is 0 where no constant was asked for
   double max_residual = 0;           // largest |p(u_k) - y_k|
   double rms_residual = 0;
-  bool rises = true;                 // on the throttle's range [0, 1]; false is a map that an allocation cannot invert
+  bool rises = true;  // on the throttle's range [0, 1]; false is a map that an allocation cannot invert
 };
 
 struct BenchFit {

@@ -1,17 +1,18 @@
 // The linear solution of wrench allocation: a pseudo-inverse, one arctangent per arm. Start, fall-back and yardstick of the nonlinear one.
 //
-// A tilting rotor is a vector in the plane across its arm, c + i s = v exp(i a) with v = thrust / kappa, kappa = thrust(u*) / u* the secant
-// slope at the hover throttle u* (the slope itself for a linear map, where v is the throttle):
+// A tilting rotor is a vector in the plane across its arm, c + i s = v exp(i a) with v = thrust / kappa, where kappa = thrust(u*) / u* is
+// the secant slope at the hover throttle u*. For a linear map that is the slope itself, and v the throttle.
 //
-//     [c; s] = K^+ W,  K = [ .. kappa_i w_i(z_i)  kappa_i w_i(y_i) .. ],  w_i(d) = [ d ; r_i x d + s_i k_i d ],  y = x x z,  k = torque/thrust    (1)
-//     v = hypot(c, s),  u = thrust^-1(kappa v),  a = atan2(s, c) unwrapped to the turn of the previous angle                                   (2)
+//     [c; s] = K^+ W,    K = [ .. kappa_i w_i(z_i)  kappa_i w_i(y_i) .. ],    y = x x z                                          (1)
+//     w_i(d) = [ d ; r_i x d + s_i k_i d ],    k = torque / thrust at u*
+//     v = hypot(c, s),    u = thrust^-1(kappa v),    a = atan2(s, c) unwrapped to the turn of the previous angle                 (2)
 //
 // A fixed rotor or stuck servo has one column, a failed rotor none. K^+ weighs wrench errors as the vehicle does, so that a rank-deficient
-// vehicle gives up what costs least. Where x and z are not quite orthogonal, z = z_perp + p x, the part along x is (Q v) and goes to the right:
+// vehicle gives up what costs least. Where x and z are not quite orthogonal, z = z_perp + p x, the part along x goes to the right:
 //
-//     [c; s] <- K^+ (W - Q v),  Q = [ .. kappa_i p_i w_i(x_i) .. ]                                                                             (3)
+//     [c; s] <- K^+ (W - Q v),    Q = [ .. kappa_i p_i w_i(x_i) .. ]                                                            (3)
 //
-// For linear maps, |c|^2 + |s|^2 = W' (K K')^-1 W is the least sum of squared throttles that any command needs for W (limits aside).
+// For linear maps |c|^2 + |s|^2 = W' (K K')^-1 W is the least sum of squared throttles that any command needs for W (limits aside).
 #pragma once
 
 #include <string>
@@ -60,15 +61,15 @@ class LinearAllocation {
 
   struct Arm {
     Kind kind = Kind::tilting;
-    Eigen::Vector3d position, axis;     // r, x
-    Eigen::Vector3d zero, across;       // z without its part along x, and y = x x z
-    double along = 0;                   // p, the part of z along x
-    double angle = 0;                   // of a fixed arm
+    Eigen::Vector3d position, axis;  // r, x
+    Eigen::Vector3d zero, across;    // z without its part along x, and y = x x z
+    double along = 0;                // p, the part of z along x
+    double angle = 0;                // of a fixed arm
     int spin = 1;
-    double kappa = 1;                   // N: thrust of v = 1
-    double torque_ratio = 0;            // k, m
-    bool linear_thrust = true;          // thrust = kappa u
-    std::vector<double> thrust, torque; // ascending coefficients
+    double kappa = 1;                    // N: thrust of v = 1
+    double torque_ratio = 0;             // k, m
+    bool linear_thrust = true;           // thrust = kappa u
+    std::vector<double> thrust, torque;  // ascending coefficients
     double throttle_lower = 0, throttle_upper = 1;
   };
 
@@ -79,13 +80,13 @@ class LinearAllocation {
 
   int num_rotors_ = 0;
   int rank_ = 0;
-  int corrections_ = 0;                                     // passes of (3), 0 where x and z are orthogonal
+  int corrections_ = 0;  // passes of (3), 0 where x and z are orthogonal
   Arm arms_[kMaxRotors];
-  double force_scale_ = 1, torque_scale_ = 1;               // square roots of the error weights
-  Eigen::Matrix<double, 2 * kMaxRotors, 6> inverse_;        // K^+, rows c_1, s_1, c_2, ...; rows of absent unknowns are 0
-  Eigen::Matrix<double, 2 * kMaxRotors, kMaxRotors> drift_; // K^+ Q
-  Eigen::Matrix<double, 6, 6> effort_;                      // (K K')^+
-  Eigen::Matrix<double, 6, 6> null_;                        // its first 6 - rank columns: directions with v' K = 0
+  double force_scale_ = 1, torque_scale_ = 1;                // square roots of the error weights
+  Eigen::Matrix<double, 2 * kMaxRotors, 6> inverse_;         // K^+, rows c_1, s_1, c_2, ...; rows of absent unknowns are 0
+  Eigen::Matrix<double, 2 * kMaxRotors, kMaxRotors> drift_;  // K^+ Q
+  Eigen::Matrix<double, 6, 6> effort_;                       // (K K')^+
+  Eigen::Matrix<double, 6, 6> null_;                         // its first 6 - rank columns: directions with v' K = 0
 };
 
 }  // namespace tenon

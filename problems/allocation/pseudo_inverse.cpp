@@ -84,7 +84,8 @@ double PseudoInverse::objective(double dt) const {
     const double u = allocation_.throttle[i];
     const double omega = has_history_ ? (allocation_.angle[i] - previous_[i]) / dt : 0;
     sum += weights.throttle * u * u + weights.throttle_penalty * penalty(u, weights.throttle_soft_lower, weights.throttle_soft_upper);
-    sum += weights.angle_rate * omega * omega + weights.angle_rate_penalty * penalty(omega, -weights.angle_rate_soft, weights.angle_rate_soft);
+    sum +=
+        weights.angle_rate * omega * omega + weights.angle_rate_penalty * penalty(omega, -weights.angle_rate_soft, weights.angle_rate_soft);
   }
   return sum;
 }
@@ -94,6 +95,8 @@ void PseudoInverse::fail_rotor(int i) {
   vehicle_.rotors[static_cast<std::size_t>(i)].throttle_lower = 0;
 }
 
-void PseudoInverse::stick_servo(int i) { linear_.stick_servo(i, previous_[i]); }
+void PseudoInverse::stick_servo(int i) {
+  linear_.stick_servo(i, previous_[i]);
+}
 
 }  // namespace tenon

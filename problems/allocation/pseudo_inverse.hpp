@@ -1,7 +1,7 @@
 // The linear solution as an allocator of its own: what `tenon allocate --solver pseudo-inverse` runs, and the yardstick of the others.
 //
-// Throttles are clipped to their limits, angles and their rates too where the vehicle's limits are hard; what that costs shows in the wrench
-// error. Where the torque is not a fixed share of the thrust, the target is moved by the error and solved again, a few times.
+// Throttles are clipped to their limits, angles and their rates too where the vehicle's limits are hard; what that costs shows in the
+// wrench error. Where the torque is not a fixed share of the thrust, the target is moved by the error and solved again, a few times.
 #pragma once
 
 #include <memory>
@@ -28,7 +28,7 @@ class PseudoInverse final : public Allocator {
 
   Vehicle vehicle_;
   LinearAllocation linear_;
-  Vector previous_;          // N, rad
+  Vector previous_;           // N, rad
   bool has_history_ = false;  // false: no rate limit or rate term in the next tick
   Allocation allocation_;
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "tenon/problems/allocation/throttle_map.hpp"
@@ -13,7 +14,7 @@ namespace {
 
 constexpr double kUnitLengthTolerance = 1e-5;  // the rounding of published tables
 constexpr double kRounding = 4e-16;
-constexpr double kParallelTolerance = 1e-6;    // sine of the angle between axis and zero below which an arm turns to no effect
+constexpr double kParallelTolerance = 1e-6;  // sine of the angle between axis and zero below which an arm turns to no effect
 
 void normalise_direction(Eigen::Vector3d& direction, int rotor, const std::string& key, std::vector<std::string>& notes) {
   const double length = direction.norm();
@@ -26,7 +27,8 @@ void normalise_direction(Eigen::Vector3d& direction, int rotor, const std::strin
 }
 
 void check_interval(double lower, double upper, int rotor, const std::string& key) {
-  if (!(lower < upper)) throw VehicleError(rotor, key, fmt::format("{} is [{}, {}]", key, lower, upper), "a lower value before a higher one");
+  if (!(lower < upper))
+    throw VehicleError(rotor, key, fmt::format("{} is [{}, {}]", key, lower, upper), "a lower value before a higher one");
 }
 
 void check_polynomial(const std::vector<double>& coefficients, int rotor, const std::string& key) {
@@ -41,7 +43,8 @@ void normalise_rotor(Rotor& rotor, int i, std::vector<std::string>& notes) {
   normalise_direction(rotor.axis, i, "axis", notes);
   normalise_direction(rotor.zero, i, "zero", notes);
   if (rotor.tilt && rotor.axis.cross(rotor.zero).norm() < kParallelTolerance) {
-    throw VehicleError(i, "zero", "zero is parallel to axis, so that the arm turns to no effect", "a thrust across the axis, or tilt = false");
+    throw VehicleError(i, "zero", "zero is parallel to axis, so that the arm turns to no effect",
+                       "a thrust across the axis, or tilt = false");
   }
   if (rotor.spin != 1 && rotor.spin != -1) throw VehicleError(i, "spin", fmt::format("spin is {}", rotor.spin), "1 or -1");
   check_polynomial(rotor.thrust, i, "thrust");
@@ -59,7 +62,8 @@ void normalise_rotor(Rotor& rotor, int i, std::vector<std::string>& notes) {
 
   const double weakest = throttle_map(rotor.thrust, rotor.throttle_lower), strongest = throttle_map(rotor.thrust, rotor.throttle_upper);
   if (!(strongest > weakest)) {
-    throw VehicleError(i, "thrust", fmt::format("thrust is {:.6g} N at the lowest throttle and {:.6g} N at the highest", weakest, strongest),
+    throw VehicleError(i, "thrust",
+                       fmt::format("thrust is {:.6g} N at the lowest throttle and {:.6g} N at the highest", weakest, strongest),
                        "a thrust that rises");
   }
   if (!rises(rotor.thrust, rotor.throttle_lower, rotor.throttle_upper)) {
@@ -82,8 +86,10 @@ void check_weights(const AllocationWeights& weights) {
   check(weights.force_error, "force_error", false);
   check(weights.torque_error, "torque_error", false);
   if (!(weights.throttle_soft_lower < weights.throttle_soft_upper)) {
-    throw VehicleError(-1, "weights", fmt::format("weights.throttle_soft_lower is {}, weights.throttle_soft_upper {}",
-                       weights.throttle_soft_lower, weights.throttle_soft_upper), "a lower value before a higher one");
+    throw VehicleError(-1, "weights",
+                       fmt::format("weights.throttle_soft_lower is {}, weights.throttle_soft_upper {}", weights.throttle_soft_lower,
+                                   weights.throttle_soft_upper),
+                       "a lower value before a higher one");
   }
 }
 
@@ -91,13 +97,15 @@ void check_weights(const AllocationWeights& weights) {
 
 std::vector<std::string> normalise(Vehicle& vehicle) {
   if (vehicle.num_rotors() < kMinRotors || vehicle.num_rotors() > kMaxRotors) {
-    throw VehicleError(-1, "rotor", fmt::format("there are {} rotors", vehicle.num_rotors()), fmt::format("{} to {}", kMinRotors, kMaxRotors));
+    throw VehicleError(-1, "rotor", fmt::format("there are {} rotors", vehicle.num_rotors()),
+                       fmt::format("{} to {}", kMinRotors, kMaxRotors));
   }
   if (!(vehicle.mass > 0) || !std::isfinite(vehicle.mass)) {
     throw VehicleError(-1, "mass", fmt::format("mass is {} kg", vehicle.mass), "more than 0");
   }
   if (!vehicle.inertia.allFinite() || !(vehicle.inertia.minCoeff() >= 0)) {
-    throw VehicleError(-1, "inertia", fmt::format("inertia is [{}, {}, {}] kg m^2", vehicle.inertia[0], vehicle.inertia[1], vehicle.inertia[2]),
+    throw VehicleError(-1, "inertia",
+                       fmt::format("inertia is [{}, {}, {}] kg m^2", vehicle.inertia[0], vehicle.inertia[1], vehicle.inertia[2]),
                        "three numbers, 0 or more");
   }
   if (!std::isfinite(vehicle.gravity) || vehicle.gravity < 0) {

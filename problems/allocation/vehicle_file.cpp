@@ -40,8 +40,8 @@ constexpr WeightKey kWeightKeys[] = {
 };
 
 const std::vector<std::string> kRootKeys{"name", "mass", "inertia", "gravity", "limits", "weights", "solver", "rotor"};
-const std::vector<std::string> kRotorKeys{"position", "axis", "zero", "spin", "thrust", "torque", "throttle",
-                                          "angle", "angle_rate_limit", "tilt", "fails_at", "servo_sticks_at"};
+const std::vector<std::string> kRotorKeys{"position",         "axis", "zero",     "spin",           "thrust", "torque", "throttle", "angle",
+                                          "angle_rate_limit", "tilt", "fails_at", "servo_sticks_at"};
 
 AllocationWeights read_weights(const Table& root) {
   AllocationWeights weights;
@@ -87,11 +87,17 @@ Rotor read_rotor(const Table& table) {
   return rotor;
 }
 
-std::string list(const std::vector<double>& numbers) { return fmt::format("[{}]", fmt::join(numbers, ", ")); }
-std::string list(const Eigen::Vector3d& v) { return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]); }
+std::string list(const std::vector<double>& numbers) {
+  return fmt::format("[{}]", fmt::join(numbers, ", "));
+}
+std::string list(const Eigen::Vector3d& v) {
+  return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]);
+}
 
 /// A line for a number with a value, nothing for one without limit.
-std::string line(const std::string& key, double value) { return std::isfinite(value) ? fmt::format("{} = {}\n", key, value) : ""; }
+std::string line(const std::string& key, double value) {
+  return std::isfinite(value) ? fmt::format("{} = {}\n", key, value) : "";
+}
 
 }  // namespace
 
@@ -135,7 +141,8 @@ VehicleFile load_vehicle(const std::string& name_or_path, const std::vector<std:
   for (const EmbeddedFile& file : embedded_vehicles()) {
     if (file.name == name_or_path) return parse_vehicle(std::string(file.text), name_or_path, overrides);
   }
-  const bool is_path = name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml") || std::filesystem::exists(name_or_path);
+  const bool is_path =
+      name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml") || std::filesystem::exists(name_or_path);
   if (!is_path) {
     throw std::invalid_argument(fmt::format("unknown vehicle '{}', the nearest is '{}' (expected one of {}, or a TOML file)", name_or_path,
                                             nearest_name(name_or_path, builtin_vehicles()), fmt::join(builtin_vehicles(), ", ")));
@@ -144,8 +151,8 @@ VehicleFile load_vehicle(const std::string& name_or_path, const std::vector<std:
 }
 
 std::string to_toml(const Vehicle& vehicle) {
-  std::string text = fmt::format("name = \"{}\"\nmass = {}\ninertia = {}\ngravity = {}\n", vehicle.name, vehicle.mass, list(vehicle.inertia),
-                                 vehicle.gravity);
+  std::string text = fmt::format("name = \"{}\"\nmass = {}\ninertia = {}\ngravity = {}\n", vehicle.name, vehicle.mass,
+                                 list(vehicle.inertia), vehicle.gravity);
   text += fmt::format("\n[limits]\nhard = {}\n\n[weights]\n", vehicle.hard_limits);
   for (const WeightKey& key : kWeightKeys) text += line(key.name, vehicle.weights.*key.field);
   for (const Rotor& rotor : vehicle.rotors) {

@@ -24,7 +24,7 @@ struct SolverChoice {
 };
 
 struct VehicleFile {
-  Vehicle vehicle;                 // normalised
+  Vehicle vehicle;  // normalised
   SolverChoice solver;
   std::vector<std::string> notes;  // one line each: what was brought to unit length
 };

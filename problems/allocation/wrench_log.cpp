@@ -31,7 +31,8 @@ void read_times(const CsvTable& table, std::vector<WrenchRow>& rows) {
     if (t != nullptr) {
       row.t = (*t)[k];
       row.dt = k == 0 ? 0 : row.t - rows[k - 1].t;
-      if (k > 0 && !(row.dt > 0)) throw InputError(position, fmt::format("t goes from {} to {} s", rows[k - 1].t, row.t), "a time that advances");
+      if (k > 0 && !(row.dt > 0))
+        throw InputError(position, fmt::format("t goes from {} to {} s", rows[k - 1].t, row.t), "a time that advances");
     } else {
       row.dt = (*dt)[k];
       if (!(row.dt > 0)) throw InputError(position, fmt::format("dt is {} s", row.dt), "more than 0");
@@ -46,8 +47,10 @@ bool has_quaternion(const CsvTable& table) {
   std::size_t count = 0;
   std::string missing;
   for (const std::string& name : kQuaternionNames) {
-    if (table.has(name)) ++count;
-    else missing = name;
+    if (table.has(name))
+      ++count;
+    else
+      missing = name;
   }
   if (count != 0 && count != kQuaternionNames.size()) {
     throw InputError({table.file, 1, 1}, "the quaternion lacks column '" + missing + "'", "all of qw, qx, qy, qz or none");
@@ -84,6 +87,8 @@ std::vector<WrenchRow> parse_wrench_log(std::string_view text, const std::string
   return wrench_rows(parse_csv(text, file, {kWrenchNames, {"t", "dt", "qw", "qx", "qy", "qz"}}));
 }
 
-std::vector<WrenchRow> read_wrench_log(const std::string& file) { return parse_wrench_log(read_file(file), file); }
+std::vector<WrenchRow> read_wrench_log(const std::string& file) {
+  return parse_wrench_log(read_file(file), file);
+}
 
 }  // namespace tenon

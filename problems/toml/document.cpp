@@ -1,105 +1,46 @@
 #include "tenon/problems/toml/document.hpp"
 
-#include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <limits>
-#include <utility>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#define TOML_ENABLE_FORMATTERS 0
-#include <toml++/toml.h>
+#include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "tenon/core/nearest_name.hpp"
 #include "tenon/core/read_file.hpp"
+#include "tenon/problems/toml/overrides.hpp"
 
 namespace tenon::toml_file {
 
 namespace {
 
-struct Override {
-  std::string path;  // rotor.3.spin
-  std::string text;  // as on the command line
-};
-
 struct Tree {
   std::string file;
   toml::table root;
-  std::vector<Override> overrides;
+  std::vector<detail::Override> overrides;
 };
-
-InputPosition position_of_override(const std::string& text) { return {"--set " + text, 0, 0}; }
 
 InputPosition position_of(const std::string& file, const toml::source_region& region) {
   return {file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
 }
 
-std::vector<std::string> split_path(const std::string& path) {
-  std::vector<std::string> parts(1);
-  for (const char c : path) {
-    if (c == '.') parts.emplace_back();
-    else parts.back() += c;
-  }
-  return parts;
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
-/// The value of an override: TOML, or else a bare word, which is a string.
-toml::table parse_override_value(const std::string& text, const std::string& value) {
-  try {
-    return toml::parse("value = " + value);
-  } catch (const toml::parse_error&) {
-    constexpr std::string_view kNotInAWord = "\"'[]{}=,#\n";
-    if (value.empty() || value.find_first_of(kNotInAWord) != std::string::npos) {
-      throw InputError(position_of_override(text), "'" + value + "' is no TOML value", "a number, true, false, a word or a [list]");
-    }
-    return toml::table{{"value", value}};
-  }
-}
-
-toml::node* element(toml::array& array, const std::string& part, const std::string& text) {
-  std::size_t index = 0;
-  const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
-  if (error != std::errc() || end != part.data() + part.size() || index < 1 || index > array.size()) {
-    throw InputError(position_of_override(text), "there is no element '" + part + "'",
-                     array.empty() ? "no element: the list is empty" : "a number from 1 to " + std::to_string(array.size()));
-  }
-  return array.get(index - 1);
-}
-
-void apply_override(toml::table& root, const Override& override_, const std::string& value_text) {
-  const toml::table parsed = parse_override_value(override_.text, value_text);
-  const toml::node& value = *parsed.get("value");
-  const std::vector<std::string> parts = split_path(override_.path);
-  toml::node* node = &root;
-  for (std::size_t k = 0; k < parts.size(); ++k) {
-    const bool last = k + 1 == parts.size();
-    if (parts[k].empty()) throw InputError(position_of_override(override_.text), "the key has an empty part", "key.path=value");
-    if (toml::table* table = node->as_table()) {
-      if (last) table->insert_or_assign(parts[k], value);
-      else node = table->contains(parts[k]) ? table->get(parts[k]) : &table->insert(parts[k], toml::table{}).first->second;
-    } else if (toml::array* array = node->as_array()) {
-      node = element(*array, parts[k], override_.text);
-      if (last) array->replace(array->cbegin() + (std::stoll(parts[k]) - 1), value);
-    } else {
-      throw InputError(position_of_override(override_.text), "'" + parts[k - 1] + "' is a single value", "a table or a list there");
-    }
-  }
-}
-
 std::string kind_of(const toml::node& node) {
   switch (node.type()) {
-    case toml::node_type::table: return "a table";
-    case toml::node_type::array: return "a list";
-    case toml::node_type::string: return "the text '" + **node.as_string() + "'";
-    case toml::node_type::integer: return "the integer " + std::to_string(**node.as_integer());
-    case toml::node_type::floating_point: return "the number " + std::to_string(**node.as_floating_point());
-    case toml::node_type::boolean: return **node.as_boolean() ? "true" : "false";
-    default: return "a date or time";
+    case toml::node_type::table:
+      return "a table";
+    case toml::node_type::array:
+      return "a list";
+    case toml::node_type::string:
+      return "the text '" + **node.as_string() + "'";
+    case toml::node_type::integer:
+      return "the integer " + std::to_string(**node.as_integer());
+    case toml::node_type::floating_point:
+      return "the number " + std::to_string(**node.as_floating_point());
+    case toml::node_type::boolean:
+      return **node.as_boolean() ? "true" : "false";
+    default:
+      return "a date or time";
   }
 }
 
@@ -119,7 +60,7 @@ struct Table::Node {
   InputPosition position(const std::string& at, const toml::source_region& region) const {
     for (auto o = tree->overrides.rbegin(); o != tree->overrides.rend(); ++o) {
       const bool covers = at == o->path || at.starts_with(o->path + ".") || (region.begin.line == 0 && o->path.starts_with(at + "."));
-      if (covers) return position_of_override(o->text);
+      if (covers) return detail::position_of_override(o->text);
     }
     return position_of(tree->file, region);
   }
@@ -127,7 +68,8 @@ struct Table::Node {
   const toml::node& require(const std::string& key) const {
     const toml::node* value = table->get(key);
     if (value == nullptr) {
-      throw InputError(position(path, table->source()), "key '" + key + "' is missing" + (path.empty() ? "" : " in " + path), "a value for it");
+      throw InputError(position(path, table->source()), "key '" + key + "' is missing" + (path.empty() ? "" : " in " + path),
+                       "a value for it");
     }
     return *value;
   }
@@ -144,7 +86,9 @@ struct Table::Node {
   }
 };
 
-bool Table::has(const std::string& key) const { return node_->table->contains(key); }
+bool Table::has(const std::string& key) const {
+  return node_->table->contains(key);
+}
 
 std::vector<std::string> Table::keys() const {
   std::vector<std::string> names;
@@ -152,8 +96,9 @@ std::vector<std::string> Table::keys() const {
   return names;
 }
 
-double Table::number(const std::string& key) const { return node_->finite(key, node_->require(key), "a number"); }
-double Table::number(const std::string& key, double fallback) const { return has(key) ? number(key) : fallback; }
+double Table::number(const std::string& key) const {
+  return node_->finite(key, node_->require(key), "a number");
+}
 
 int Table::integer(const std::string& key) const {
   const toml::node& value = node_->require(key);
@@ -161,21 +106,18 @@ int Table::integer(const std::string& key) const {
   if (!found) throw node_->wrong(key, value, "an integer");
   return *found;
 }
-int Table::integer(const std::string& key, int fallback) const { return has(key) ? integer(key) : fallback; }
 
 bool Table::flag(const std::string& key) const {
   const toml::node& value = node_->require(key);
   if (!value.is_boolean()) throw node_->wrong(key, value, "true or false");
   return **value.as_boolean();
 }
-bool Table::flag(const std::string& key, bool fallback) const { return has(key) ? flag(key) : fallback; }
 
 std::string Table::text(const std::string& key) const {
   const toml::node& value = node_->require(key);
   if (!value.is_string()) throw node_->wrong(key, value, "text in quotes");
   return **value.as_string();
 }
-std::string Table::text(const std::string& key, const std::string& fallback) const { return has(key) ? text(key) : fallback; }
 
 std::vector<double> Table::numbers(const std::string& key, std::size_t size) const {
   const std::string expected = size == 0 ? "a list of numbers" : "a list of " + std::to_string(size) + " numbers";
@@ -193,9 +135,6 @@ std::vector<double> Table::numbers(const std::string& key, std::size_t size) con
 Eigen::Vector3d Table::vector3(const std::string& key) const {
   const std::vector<double> list = numbers(key, 3);
   return {list[0], list[1], list[2]};
-}
-Eigen::Vector3d Table::vector3(const std::string& key, const Eigen::Vector3d& fallback) const {
-  return has(key) ? vector3(key) : fallback;
 }
 
 std::optional<Table> Table::table(const std::string& key, const std::vector<std::string>& known_keys) const {
@@ -227,7 +166,9 @@ InputPosition Table::position(const std::string& key) const {
   return node_->position(node_->path_of(key), value == nullptr ? node_->table->source() : value->source());
 }
 
-const std::string& Table::path() const { return node_->path; }
+const std::string& Table::path() const {
+  return node_->path;
+}
 
 void Table::reject_unknown_keys(const std::vector<std::string>& known_keys) const {
   if (known_keys.empty()) return;
@@ -237,7 +178,7 @@ void Table::reject_unknown_keys(const std::vector<std::string>& known_keys) cons
     throw InputError(node_->position(node_->path_of(name), key.source()),
                      "unknown key '" + name + "'" + (path().empty() ? "" : " in " + path()) + "; the nearest known key is '" +
                          nearest_name(name, known_keys) + "'",
-                     "one of " + joined(known_keys));
+                     fmt::format("one of {}", fmt::join(known_keys, ", ")));
   }
 }
 
@@ -254,13 +195,12 @@ Document::Document(const std::string& text, const std::string& file, const std::
   for (const std::string& override_text : overrides) {
     const auto equals = override_text.find('=');
     if (equals == std::string::npos || equals == 0) {
-      throw InputError(position_of_override(override_text), "is no assignment", "key.path=value");
+      throw InputError(detail::position_of_override(override_text), "is no assignment", "key.path=value");
     }
     tree->overrides.push_back({override_text.substr(0, equals), override_text});
-    apply_override(tree->root, tree->overrides.back(), override_text.substr(equals + 1));
+    detail::apply_override(tree->root, tree->overrides.back(), override_text.substr(equals + 1));
   }
-  const toml::table* root = &tree->root;
-  root_ = std::make_shared<const Table::Node>(Table::Node{tree, root, ""});
+  root_ = std::make_shared<const Table::Node>(Table::Node{tree, &tree->root, ""});
 }
 
 Document Document::read(const std::string& file, const std::vector<std::string>& overrides) {

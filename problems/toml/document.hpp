@@ -23,15 +23,15 @@ class Table {
   std::vector<std::string> keys() const;
 
   double number(const std::string& key) const;
-  double number(const std::string& key, double fallback) const;
+  double number(const std::string& key, double fallback) const { return has(key) ? number(key) : fallback; }
   int integer(const std::string& key) const;
-  int integer(const std::string& key, int fallback) const;
+  int integer(const std::string& key, int fallback) const { return has(key) ? integer(key) : fallback; }
   bool flag(const std::string& key) const;
-  bool flag(const std::string& key, bool fallback) const;
+  bool flag(const std::string& key, bool fallback) const { return has(key) ? flag(key) : fallback; }
   std::string text(const std::string& key) const;
-  std::string text(const std::string& key, const std::string& fallback) const;
+  std::string text(const std::string& key, const std::string& fallback) const { return has(key) ? text(key) : fallback; }
   Eigen::Vector3d vector3(const std::string& key) const;
-  Eigen::Vector3d vector3(const std::string& key, const Eigen::Vector3d& fallback) const;
+  Eigen::Vector3d vector3(const std::string& key, const Eigen::Vector3d& fallback) const { return has(key) ? vector3(key) : fallback; }
   /// A list of numbers of any length; of exactly `size` where that is not 0.
   std::vector<double> numbers(const std::string& key, std::size_t size = 0) const;
 

@@ -1,0 +1,30 @@
+// The real binary, run from a test: its exit code and what it prints.
+#pragma once
+
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "tenon/tests/scratch_folder.hpp"
+
+namespace tenon {
+
+struct Ended {
+  int code = -1;
+  std::string out, err;
+};
+
+/// Runs `tenon arguments` through the shell, in the test's own folder.
+inline Ended run_tenon(const ScratchFolder& folder, const std::string& arguments) {
+  const std::string command = "cd '" + folder.path("") + "' && '" TENON_BINARY "' " + arguments + " > stdout.txt 2> stderr.txt";
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), folder.read("stdout.txt"), folder.read("stderr.txt")};
+}
+
+/// Whether a text is one line that begins and goes on as given.
+inline bool is_one_line(const std::string& text, const std::string& begin) {
+  return text.starts_with(begin) && text.find('\n') == text.size() - 1;
+}
+
+}  // namespace tenon
