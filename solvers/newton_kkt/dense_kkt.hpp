@@ -11,6 +11,7 @@
 #include <cstdint>
 
 #include "tenon/solvers/newton_kkt/dense_ldlt.hpp"
+#include "tenon/solvers/newton_kkt/refinement.hpp"
 
 namespace tenon {
 
@@ -52,7 +53,6 @@ class DenseKkt {
   using PaddedVector = typename Ldlt::PaddedVector;
   static constexpr int kSweeps = 2;       // of the equilibration
   static constexpr int kRefinements = 5;  // at most
-  static constexpr Scalar kEpsilon = std::numeric_limits<Scalar>::epsilon();
 
   int size() const { return ldlt_.size(); }
 
@@ -60,7 +60,7 @@ class DenseKkt {
   void assemble(const HessianType& hessian, const JacobianType& jacobian, const SigmaType& sigma, const DType& d);
   void equilibrate();
   Inertia refuse();
-  Scalar backward_error();
+  BackwardError<Scalar> backward_error();
 
   int n_, m_;
   Ldlt ldlt_;
@@ -116,20 +116,17 @@ Inertia DenseKkt<Scalar, N, M>::refuse() {
   return ldlt_.factor(k_);
 }
 
-// residual = r - K x;  (1.4) max_i |r - K x|_i / (|K| |x| + |r|)_i, the smallest relative change of K and r that makes x exact
+// residual = r - K x, and its size (1.4)
 template <class Scalar, int N, int M>
-Scalar DenseKkt<Scalar, N, M>::backward_error() {
+BackwardError<Scalar> DenseKkt<Scalar, N, M>::backward_error() {
   residual_ = rhs_;
   weight_ = rhs_.cwiseAbs();
-  Scalar x_max = 0;
   for (int j = 0; j < size(); ++j) {
     residual_.noalias() -= k_.col(j) * solution_[j];
     weight_.noalias() += k_.col(j).cwiseAbs() * std::abs(solution_[j]);
-    x_max = std::max(x_max, std::abs(solution_[j]));
   }
-  // a row whose terms all vanish beside x is measured against x: its own rounding is of that size
-  const Scalar floor = std::max(size() * kEpsilon * x_max, std::numeric_limits<Scalar>::min());
-  return (residual_.array().abs() / (weight_.array() + floor)).maxCoeff();
+  constexpr Scalar floor = std::numeric_limits<Scalar>::min();  // 0 / 0 is 0
+  return {(residual_.array().abs() / (weight_.array() + floor)).maxCoeff(), residual_.template lpNorm<Eigen::Infinity>()};
 }
 
 template <class Scalar, int N, int M>
@@ -142,20 +139,8 @@ void DenseKkt<Scalar, N, M>::solve(const Eigen::MatrixBase<XType>& r_x, const Ei
   solution_ = rhs_;
   ldlt_.solve_in_place(solution_);
 
-  // (1.3) x <- x + K^-1 (r - K x), while the error falls to half or less
-  Scalar error = backward_error();
-  for (int step = 0; step < kRefinements && error > 4 * kEpsilon; ++step) {
-    previous_ = solution_;
-    ldlt_.solve_in_place(residual_);
-    solution_ += residual_;
-    const Scalar next = backward_error();
-    if (!(next < error)) {
-      solution_ = previous_;
-      break;
-    }
-    if (next > error / 2) break;
-    error = next;
-  }
+  refine(solution_, residual_, previous_, kRefinements, [this](PaddedVector& x) { ldlt_.solve_in_place(x); },
+         [this] { return backward_error(); });
   for (int i = 0; i < n_; ++i) dx.coeffRef(i) = scale_[i] * solution_[i];
   for (int i = 0; i < m_; ++i) dlambda.coeffRef(i) = scale_[n_ + i] * solution_[n_ + i];
 }

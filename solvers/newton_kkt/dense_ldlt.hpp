@@ -48,6 +48,9 @@ class DenseLdlt {
   // (2.5) a column is zero where it has cancelled below this many units of rounding
   static constexpr Scalar kZero = 64 * std::numeric_limits<Scalar>::epsilon();
 
+  // what is left of an equilibrated matrix below this is nothing; it can still be squared
+  static constexpr Scalar kTiny = Scalar(sizeof(Scalar) < sizeof(double) ? 1e-18 : 1e-150);
+
   Scalar* column(int j) { return l_.data() + static_cast<std::ptrdiff_t>(j) * l_.rows(); }
 
   int select_pivot(int k);
@@ -80,7 +83,7 @@ Inertia DenseLdlt<Scalar, Size>::factor(const Storage& a) {
   while (k < size_) {
     const Scalar below = lanes::max_abs(column(k), k + 1, size_);
     // (2.5) max_i |a_ik| <= kZero magnitude_k; written so that a NaN is a zero too
-    if (!(std::max(std::abs(l_(k, k)), below) > kZero * magnitude_[k])) {
+    if (!(std::max(std::abs(l_(k, k)), below) > std::max(kZero * magnitude_[k], kTiny))) {
       eliminate_zero(k);
       ++inertia.zero;
       ++k;

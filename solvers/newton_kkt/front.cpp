@@ -15,6 +15,8 @@ constexpr double kForcedThreshold = 1e-10;   // where columns may not be left ov
 constexpr double kPerturbation = 1.5e-8;     // sqrt(eps), beside the largest entry of the column
 constexpr double kAlpha = 0.6403882032022076;  // (2.3)
 constexpr double kZero = 64 * std::numeric_limits<double>::epsilon();  // (2.5)
+constexpr double kTiny = 1e-150;       // of an equilibrated matrix, and still safe to square
+constexpr double kWeakCoupling = 1e12;  // |d11 d22| / d21^2 of a 2x2 pivot
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr int kBlock = 48;  // columns kept up to date one by one; those behind them are updated in one product
 
@@ -88,7 +90,7 @@ Pivot Elimination::find_pivot(int k) {
   double* a = front_.column(k);
   const double diagonal = std::abs(a[k]);
   const double below = lanes::max_abs(a, k + 1, front_.rows);
-  if (!(std::max(diagonal, below) > kZero * front_.magnitude[k])) return Pivot::zero;
+  if (!(std::max(diagonal, below) > std::max(kZero * front_.magnitude[k], kTiny))) return Pivot::zero;
   if (diagonal >= kAlpha * below) return Pivot::one;
 
   const double growth_one = diagonal > 0 ? below / diagonal : kInfinite;
@@ -106,7 +108,8 @@ Pivot Elimination::find_pivot(int k) {
     const double s = front_.column(r)[r] / d21;
     const double c = 1 / (std::abs(d21) * std::abs(t * s - 1));
     const double growth_two = c * std::max(std::abs(s) * beside_k + beside_r, beside_k + std::abs(t) * beside_r);
-    if (growth_two <= std::min(growth_one, 1 / threshold_)) {
+    // a coupling far below the diagonal has nothing to offer, and would overflow
+    if (std::abs(t * s) < kWeakCoupling && growth_two <= std::min(growth_one, 1 / threshold_)) {
       exchange(k + 1, r);
       return Pivot::two;
     }

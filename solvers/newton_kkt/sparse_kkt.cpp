@@ -13,7 +13,6 @@ namespace {
 constexpr int kDenseSize = 40;     // up to here the dense factorisation is the faster one
 constexpr int kSweeps = 3;         // of the equilibration
 constexpr int kRefinements = 10;   // at most
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -113,8 +112,8 @@ void SparseKkt::apply_inverse(Vector& x) {
   x = padded_.head(size());
 }
 
-// residual = r - K x;  (1.4) max_i |r - K x|_i / (|K| |x| + |r|)_i, the smallest relative change of K and r that makes x exact
-double SparseKkt::backward_error() {
+// residual = r - K x, and its size (1.4)
+BackwardError<double> SparseKkt::backward_error() {
   residual_ = rhs_;
   weight_ = rhs_.cwiseAbs();
   for (int j = 0; j < size(); ++j) {
@@ -134,9 +133,8 @@ double SparseKkt::backward_error() {
     residual_[j] -= sum;
     weight_[j] += weight;
   }
-  // a row whose terms all vanish beside x is measured against x: its own rounding is of that size
-  const double floor = std::max(size() * kEpsilon * solution_.lpNorm<Eigen::Infinity>(), std::numeric_limits<double>::min());
-  return (residual_.array().abs() / (weight_.array() + floor)).maxCoeff();
+  constexpr double floor = std::numeric_limits<double>::min();  // 0 / 0 is 0
+  return {(residual_.array().abs() / (weight_.array() + floor)).maxCoeff(), residual_.lpNorm<Eigen::Infinity>()};
 }
 
 void SparseKkt::solve(ConstVectorRef r_x, ConstVectorRef r_c, VectorRef dx, VectorRef dlambda) {
@@ -146,20 +144,7 @@ void SparseKkt::solve(ConstVectorRef r_x, ConstVectorRef r_c, VectorRef dx, Vect
   solution_ = rhs_;
   apply_inverse(solution_);
 
-  // (1.3) x <- x + K^-1 (r - K x), while the error falls to half or less
-  double error = backward_error();
-  for (int step = 0; step < kRefinements && error > 4 * kEpsilon; ++step) {
-    previous_ = solution_;
-    apply_inverse(residual_);
-    solution_ += residual_;
-    const double next = backward_error();
-    if (!(next < error)) {
-      solution_ = previous_;
-      break;
-    }
-    if (next > error / 2) break;
-    error = next;
-  }
+  refine(solution_, residual_, previous_, kRefinements, [this](Vector& x) { apply_inverse(x); }, [this] { return backward_error(); });
   dx = scale_.head(n_).cwiseProduct(solution_.head(n_));
   dlambda = scale_.tail(m_).cwiseProduct(solution_.tail(m_));
 }

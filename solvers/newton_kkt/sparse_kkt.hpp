@@ -13,6 +13,7 @@
 #include "tenon/core/sparse_pattern.hpp"
 #include "tenon/solvers/newton_kkt/dense_ldlt.hpp"
 #include "tenon/solvers/newton_kkt/multifrontal_ldlt.hpp"
+#include "tenon/solvers/newton_kkt/refinement.hpp"
 
 namespace tenon {
 
@@ -33,7 +34,7 @@ class SparseKkt {
   void equilibrate();
   Inertia factor_values();
   void apply_inverse(Vector& x);
-  double backward_error();
+  BackwardError<double> backward_error();
 
   int n_, m_;
   SparsePattern lower_;                              // of K, with its whole diagonal first in each column
