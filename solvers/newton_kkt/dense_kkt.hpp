@@ -6,11 +6,10 @@
 // S is diagonal, powers of two: it equilibrates K without a rounding. Solves are refined against K. Equations: linear_algebra.md (1.1)-(1.4).
 #pragma once
 
-#include <bit>
 #include <cassert>
-#include <cstdint>
 
 #include "tenon/solvers/newton_kkt/dense_ldlt.hpp"
+#include "tenon/solvers/newton_kkt/equilibration.hpp"
 #include "tenon/solvers/newton_kkt/refinement.hpp"
 
 namespace tenon {
@@ -69,18 +68,6 @@ class DenseKkt {
   PaddedVector rhs_, solution_, previous_, residual_, weight_;
 };
 
-namespace detail {
-
-// The power of two in (x/2, x], by clearing the fraction.
-inline double power_of_two_below(double x) {
-  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) & 0xFFF0'0000'0000'0000u);
-}
-inline float power_of_two_below(float x) {
-  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) & 0xFF80'0000u);
-}
-
-}  // namespace detail
-
 template <class Scalar, int N, int M>
 template <class HessianType, class JacobianType, class SigmaType, class DType>
 void DenseKkt<Scalar, N, M>::assemble(const HessianType& hessian, const JacobianType& jacobian, const SigmaType& sigma, const DType& d) {
@@ -96,13 +83,13 @@ void DenseKkt<Scalar, N, M>::assemble(const HessianType& hessian, const Jacobian
   }
 }
 
-// (1.2) s_i <- s_i / sqrt(max_j |s_i K_ij s_j|), rounded down to a power of two, for all rows at once; an empty row keeps its scale
+// (1.2)
 template <class Scalar, int N, int M>
 void DenseKkt<Scalar, N, M>::equilibrate() {
   scale_.setOnes();
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     for (int j = 0; j < size(); ++j) row_max_[j] = lanes::max_abs(k_.col(j).data(), 0, size());
-    for (int j = 0; j < size(); ++j) row_max_[j] = row_max_[j] > 0 ? detail::power_of_two_below(1 / std::sqrt(row_max_[j])) : Scalar(1);
+    for (int j = 0; j < size(); ++j) row_max_[j] = inverse_root_scale(row_max_[j]);
     for (int j = 0; j < size(); ++j) k_.col(j).array() *= row_max_.array() * row_max_[j];
     scale_.array() *= row_max_.array();
   }

@@ -12,6 +12,10 @@
 
 namespace tenon {
 
+/// Good enough: a few roundings in each row.
+template <class Scalar>
+inline constexpr Scalar kRowError = 16 * std::numeric_limits<Scalar>::epsilon();
+
 template <class Scalar>
 struct BackwardError {
   Scalar by_row = 0;   // omega of (1.4)
@@ -24,7 +28,7 @@ template <class VectorType, class ApplyInverse, class Measure>
 void refine(VectorType& x, VectorType& residual, VectorType& previous, int steps, ApplyInverse apply_inverse, Measure measure) {
   using Scalar = typename VectorType::Scalar;
   BackwardError<Scalar> error = measure();
-  for (int step = 0; step < steps && error.by_row > 4 * std::numeric_limits<Scalar>::epsilon(); ++step) {
+  for (int step = 0; step < steps && error.by_row > kRowError<Scalar>; ++step) {
     previous = x;
     apply_inverse(residual);
     x += residual;
