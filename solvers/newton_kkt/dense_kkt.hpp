@@ -6,11 +6,11 @@
 // S is diagonal, powers of two: it equilibrates K without a rounding. Solves are refined against K. Equations: linear_algebra.md (1.1)-(1.4).
 #pragma once
 
-#include <bit>
 #include <cassert>
-#include <cstdint>
 
 #include "tenon/solvers/newton_kkt/dense_ldlt.hpp"
+#include "tenon/solvers/newton_kkt/equilibration.hpp"
+#include "tenon/solvers/newton_kkt/refinement.hpp"
 
 namespace tenon {
 
@@ -52,7 +52,6 @@ class DenseKkt {
   using PaddedVector = typename Ldlt::PaddedVector;
   static constexpr int kSweeps = 2;       // of the equilibration
   static constexpr int kRefinements = 5;  // at most
-  static constexpr Scalar kEpsilon = std::numeric_limits<Scalar>::epsilon();
 
   int size() const { return ldlt_.size(); }
 
@@ -60,7 +59,7 @@ class DenseKkt {
   void assemble(const HessianType& hessian, const JacobianType& jacobian, const SigmaType& sigma, const DType& d);
   void equilibrate();
   Inertia refuse();
-  Scalar backward_error();
+  BackwardError<Scalar> backward_error();
 
   int n_, m_;
   Ldlt ldlt_;
@@ -68,18 +67,6 @@ class DenseKkt {
   PaddedVector scale_, row_max_;
   PaddedVector rhs_, solution_, previous_, residual_, weight_;
 };
-
-namespace detail {
-
-// The power of two in (x/2, x], by clearing the fraction.
-inline double power_of_two_below(double x) {
-  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) & 0xFFF0'0000'0000'0000u);
-}
-inline float power_of_two_below(float x) {
-  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) & 0xFF80'0000u);
-}
-
-}  // namespace detail
 
 template <class Scalar, int N, int M>
 template <class HessianType, class JacobianType, class SigmaType, class DType>
@@ -96,13 +83,13 @@ void DenseKkt<Scalar, N, M>::assemble(const HessianType& hessian, const Jacobian
   }
 }
 
-// (1.2) s_i <- s_i / sqrt(max_j |s_i K_ij s_j|), rounded down to a power of two, for all rows at once; an empty row keeps its scale
+// (1.2)
 template <class Scalar, int N, int M>
 void DenseKkt<Scalar, N, M>::equilibrate() {
   scale_.setOnes();
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     for (int j = 0; j < size(); ++j) row_max_[j] = lanes::max_abs(k_.col(j).data(), 0, size());
-    for (int j = 0; j < size(); ++j) row_max_[j] = row_max_[j] > 0 ? detail::power_of_two_below(1 / std::sqrt(row_max_[j])) : Scalar(1);
+    for (int j = 0; j < size(); ++j) row_max_[j] = inverse_root_scale(row_max_[j]);
     for (int j = 0; j < size(); ++j) k_.col(j).array() *= row_max_.array() * row_max_[j];
     scale_.array() *= row_max_.array();
   }
@@ -116,20 +103,17 @@ Inertia DenseKkt<Scalar, N, M>::refuse() {
   return ldlt_.factor(k_);
 }
 
-// residual = r - K x;  (1.4) max_i |r - K x|_i / (|K| |x| + |r|)_i, the smallest relative change of K and r that makes x exact
+// residual = r - K x, and its size (1.4)
 template <class Scalar, int N, int M>
-Scalar DenseKkt<Scalar, N, M>::backward_error() {
+BackwardError<Scalar> DenseKkt<Scalar, N, M>::backward_error() {
   residual_ = rhs_;
   weight_ = rhs_.cwiseAbs();
-  Scalar x_max = 0;
   for (int j = 0; j < size(); ++j) {
     residual_.noalias() -= k_.col(j) * solution_[j];
     weight_.noalias() += k_.col(j).cwiseAbs() * std::abs(solution_[j]);
-    x_max = std::max(x_max, std::abs(solution_[j]));
   }
-  // a row whose terms all vanish beside x is measured against x: its own rounding is of that size
-  const Scalar floor = std::max(size() * kEpsilon * x_max, std::numeric_limits<Scalar>::min());
-  return (residual_.array().abs() / (weight_.array() + floor)).maxCoeff();
+  constexpr Scalar floor = std::numeric_limits<Scalar>::min();  // 0 / 0 is 0
+  return {(residual_.array().abs() / (weight_.array() + floor)).maxCoeff(), residual_.template lpNorm<Eigen::Infinity>()};
 }
 
 template <class Scalar, int N, int M>
@@ -142,20 +126,8 @@ void DenseKkt<Scalar, N, M>::solve(const Eigen::MatrixBase<XType>& r_x, const Ei
   solution_ = rhs_;
   ldlt_.solve_in_place(solution_);
 
-  // (1.3) x <- x + K^-1 (r - K x), while the error falls to half or less
-  Scalar error = backward_error();
-  for (int step = 0; step < kRefinements && error > 4 * kEpsilon; ++step) {
-    previous_ = solution_;
-    ldlt_.solve_in_place(residual_);
-    solution_ += residual_;
-    const Scalar next = backward_error();
-    if (!(next < error)) {
-      solution_ = previous_;
-      break;
-    }
-    if (next > error / 2) break;
-    error = next;
-  }
+  refine(solution_, residual_, previous_, kRefinements, [this](PaddedVector& x) { ldlt_.solve_in_place(x); },
+         [this] { return backward_error(); });
   for (int i = 0; i < n_; ++i) dx.coeffRef(i) = scale_[i] * solution_[i];
   for (int i = 0; i < m_; ++i) dlambda.coeffRef(i) = scale_[n_ + i] * solution_[n_ + i];
 }

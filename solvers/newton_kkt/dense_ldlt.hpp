@@ -48,6 +48,9 @@ class DenseLdlt {
   // (2.5) a column is zero where it has cancelled below this many units of rounding
   static constexpr Scalar kZero = 64 * std::numeric_limits<Scalar>::epsilon();
 
+  // what is left of an equilibrated matrix below this is nothing; it can still be squared
+  static constexpr Scalar kTiny = Scalar(sizeof(Scalar) < sizeof(double) ? 1e-18 : 1e-150);
+
   Scalar* column(int j) { return l_.data() + static_cast<std::ptrdiff_t>(j) * l_.rows(); }
 
   int select_pivot(int k);
@@ -80,7 +83,7 @@ Inertia DenseLdlt<Scalar, Size>::factor(const Storage& a) {
   while (k < size_) {
     const Scalar below = lanes::max_abs(column(k), k + 1, size_);
     // (2.5) max_i |a_ik| <= kZero magnitude_k; written so that a NaN is a zero too
-    if (!(std::max(std::abs(l_(k, k)), below) > kZero * magnitude_[k])) {
+    if (!(std::max(std::abs(l_(k, k)), below) > std::max(kZero * magnitude_[k], kTiny))) {
       eliminate_zero(k);
       ++inertia.zero;
       ++k;
@@ -172,10 +175,11 @@ void DenseLdlt<Scalar, Size>::eliminate_one(int k, Scalar below) {
   Scalar* a = column(k);
   Scalar* l = x_.data();
   const Scalar inverse = 1 / a[k];
+  const Scalar change = std::max(below, std::max(Scalar(1), below * std::abs(inverse)) * magnitude_[k]);  // (2.5)
   for (int i = lanes::lane_of<Scalar>(k + 1); i < size_; i += lanes::kLanes<Scalar>) {
     lanes::Map<Scalar> scaled(l + i), magnitude(magnitude_.data() + i);
     scaled = lanes::ConstMap<Scalar>(a + i) * inverse;
-    magnitude = magnitude.max(scaled.abs() * below);  // (2.5)
+    magnitude = magnitude.max(scaled.abs() * change);
   }
   for (int j = k + 1; j < size_; ++j) lanes::subtract_scaled(l[j], a, column(j), j, size_);
   for (int i = lanes::lane_of<Scalar>(k + 1); i < size_; i += lanes::kLanes<Scalar>) {
@@ -198,12 +202,16 @@ void DenseLdlt<Scalar, Size>::eliminate_two(int k) {
   d_inverse_below_[k] = -c;
   d_inverse_[k + 1] = t * c;
 
-  const Scalar largest1 = lanes::max_abs(a1, k + 2, size_);
-  const Scalar largest2 = lanes::max_abs(a2, k + 2, size_);
+  const Scalar below1 = lanes::max_abs(a1, k + 2, size_);
+  const Scalar below2 = lanes::max_abs(a2, k + 2, size_);
+  const Scalar growth =
+      std::max(Scalar(1), std::abs(c) * std::max(std::abs(s) * below1 + below2, below1 + std::abs(t) * below2));
+  const Scalar change1 = std::max(below1, growth * magnitude_[k]);  // (2.5)
+  const Scalar change2 = std::max(below2, growth * magnitude_[k + 1]);
   for (int j = k + 2; j < size_; ++j) {
     const Scalar l1 = (s * a1[j] - a2[j]) * c;
     const Scalar l2 = (t * a2[j] - a1[j]) * c;
-    magnitude_[j] = std::max(magnitude_[j], std::abs(l1) * largest1 + std::abs(l2) * largest2);  // (2.5)
+    magnitude_[j] = std::max(magnitude_[j], std::abs(l1) * change1 + std::abs(l2) * change2);
     lanes::subtract_scaled(l1, a1, l2, a2, column(j), j, size_);
     // row j of the two columns is not read again: later columns begin below it
     a1[j] = l1;

@@ -10,11 +10,13 @@
 namespace tenon {
 namespace {
 
-constexpr double kThreshold = 0.01;          // u of (4.2)
+constexpr double kThreshold = 0.1;          // u of (4.2)
 constexpr double kForcedThreshold = 1e-10;   // where columns may not be left over
 constexpr double kPerturbation = 1.5e-8;     // sqrt(eps), beside the largest entry of the column
 constexpr double kAlpha = 0.6403882032022076;  // (2.3)
 constexpr double kZero = 64 * std::numeric_limits<double>::epsilon();  // (2.5)
+constexpr double kTiny = 1e-150;       // of an equilibrated matrix, and still safe to square
+constexpr double kWeakCoupling = 1e12;  // |d11 d22| / d21^2 of a 2x2 pivot
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr int kBlock = 48;  // columns kept up to date one by one; those behind them are updated in one product
 
@@ -88,7 +90,7 @@ Pivot Elimination::find_pivot(int k) {
   double* a = front_.column(k);
   const double diagonal = std::abs(a[k]);
   const double below = lanes::max_abs(a, k + 1, front_.rows);
-  if (!(std::max(diagonal, below) > kZero * front_.magnitude[k])) return Pivot::zero;
+  if (!(std::max(diagonal, below) > std::max(kZero * front_.magnitude[k], kTiny))) return Pivot::zero;
   if (diagonal >= kAlpha * below) return Pivot::one;
 
   const double growth_one = diagonal > 0 ? below / diagonal : kInfinite;
@@ -106,7 +108,8 @@ Pivot Elimination::find_pivot(int k) {
     const double s = front_.column(r)[r] / d21;
     const double c = 1 / (std::abs(d21) * std::abs(t * s - 1));
     const double growth_two = c * std::max(std::abs(s) * beside_k + beside_r, beside_k + std::abs(t) * beside_r);
-    if (growth_two <= std::min(growth_one, 1 / threshold_)) {
+    // a coupling far below the diagonal has nothing to offer, and would overflow
+    if (std::abs(t * s) < kWeakCoupling && growth_two <= std::min(growth_one, 1 / threshold_)) {
       exchange(k + 1, r);
       return Pivot::two;
     }
@@ -152,12 +155,13 @@ void Elimination::eliminate_one(int k) {
   double* w = front_.unscaled_column(k);
   ++(l[k] > 0 ? inertia_.positive : inertia_.negative);
   const double inverse = 1 / l[k];
-  const lanes::Lane<double> below = lanes::Lane<double>::Constant(lanes::max_abs(l, k + 1, front_.rows));
+  const double below = lanes::max_abs(l, k + 1, front_.rows);
+  const lanes::Lane<double> change = lanes::Lane<double>::Constant(std::max(below, front_.magnitude[k]));
   for (int i = lanes::lane_of<double>(k + 1); i < front_.rows; i += lanes::kLanes<double>) {
     lanes::Map<double> column(l + i), magnitude(front_.magnitude + i);
     lanes::Map<double>(w + i) = column;
     column *= inverse;
-    magnitude = magnitude.max(column.abs() * below);  // (2.5)
+    magnitude = magnitude.max(column.abs() * change);  // (2.5)
   }
   front_.d_inverse[k] = inverse;
   front_.d_inverse_below[k] = 0;
@@ -185,8 +189,10 @@ void Elimination::eliminate_two(int k) {
   front_.d_inverse_below[k] = -c;
   front_.d_inverse_below[k + 1] = 0;
 
-  const lanes::Lane<double> below1 = lanes::Lane<double>::Constant(lanes::max_abs(l1, k + 2, front_.rows));
-  const lanes::Lane<double> below2 = lanes::Lane<double>::Constant(lanes::max_abs(l2, k + 2, front_.rows));
+  const double below1 = lanes::max_abs(l1, k + 2, front_.rows);
+  const double below2 = lanes::max_abs(l2, k + 2, front_.rows);
+  const lanes::Lane<double> change1 = lanes::Lane<double>::Constant(std::max(below1, front_.magnitude[k]));
+  const lanes::Lane<double> change2 = lanes::Lane<double>::Constant(std::max(below2, front_.magnitude[k + 1]));
   for (int i = lanes::lane_of<double>(k + 2); i < front_.rows; i += lanes::kLanes<double>) {
     lanes::Map<double> column1(l1 + i), column2(l2 + i), magnitude(front_.magnitude + i);
     const lanes::Lane<double> a1 = column1, a2 = column2;
@@ -194,7 +200,7 @@ void Elimination::eliminate_two(int k) {
     lanes::Map<double>(w2 + i) = a2;
     column1 = (a1 * s - a2) * c;
     column2 = (a2 * t - a1) * c;
-    magnitude = magnitude.max(column1.abs() * below1 + column2.abs() * below2);  // (2.5)
+    magnitude = magnitude.max(column1.abs() * change1 + column2.abs() * change2);  // (2.5)
   }
   for (int j = k + 2; j < block_end_; ++j) lanes::subtract_scaled(w1[j], l1, w2[j], l2, front_.column(j), j, front_.rows);
   l1[k + 1] = 0;

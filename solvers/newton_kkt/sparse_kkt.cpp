@@ -5,15 +5,13 @@
 #include <cmath>
 #include <limits>
 
-#include "tenon/solvers/newton_kkt/dense_kkt.hpp"
+#include "tenon/solvers/newton_kkt/equilibration.hpp"
 
 namespace tenon {
 namespace {
 
-constexpr int kDenseSize = 40;     // up to here the dense factorisation is the faster one
-constexpr int kSweeps = 3;         // of the equilibration
+constexpr int kSweeps = 3;        // of the equilibration
 constexpr int kRefinements = 10;   // at most
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -36,16 +34,9 @@ SparseKkt::SparseKkt(const SparsePattern& hessian, const SparsePattern& jacobian
     lower_.outer.push_back(lower_.nonzeros());
   }
 
-  const int padded = lanes::padded<double>(size());
+  ldlt_.emplace(lower_, n_);
   values_.setZero(lower_.nonzeros());
-  for (Vector* vector : {&scale_, &sweep_scale_, &rhs_, &solution_, &previous_, &residual_, &weight_}) vector->setZero(size());
-  if (size() <= kDenseSize) {
-    dense_ = std::make_unique<DenseLdlt<double, Dynamic>>(size());
-    dense_values_.setZero(padded, size());
-    padded_.setZero(padded);
-  } else {
-    sparse_ = std::make_unique<MultifrontalLdlt>(lower_, n_);
-  }
+  for (Vector* vector : {&scale_, &row_max_, &rhs_, &solution_, &previous_, &residual_, &weight_}) vector->setZero(size());
 }
 
 Inertia SparseKkt::factor(const SparseMatrix& hessian, const SparseMatrix& jacobian, ConstVectorRef sigma, ConstVectorRef d) {
@@ -53,10 +44,10 @@ Inertia SparseKkt::factor(const SparseMatrix& hessian, const SparseMatrix& jacob
   if (!std::isfinite(values_.sum())) {  // all zero eigenvalues, and solves to zero
     values_.setZero();
     scale_.setOnes();
-    return factor_values();
+    return ldlt_->factor(values_.data());
   }
   equilibrate();
-  return factor_values();
+  return ldlt_->factor(values_.data());
 }
 
 void SparseKkt::assemble(const SparseMatrix& hessian, const SparseMatrix& jacobian, ConstVectorRef sigma, ConstVectorRef d) {
@@ -74,47 +65,30 @@ void SparseKkt::assemble(const SparseMatrix& hessian, const SparseMatrix& jacobi
   }
 }
 
-// (1.2) s_i <- s_i / sqrt(max_j |s_i K_ij s_j|), rounded down to a power of two, for all rows at once; an empty row keeps its scale
+// (1.2)
 void SparseKkt::equilibrate() {
   scale_.setOnes();
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    Vector& row_max = sweep_scale_;
-    row_max.setZero();
+    row_max_.setZero();
     for (int j = 0; j < size(); ++j) {
-      double column_max = row_max[j];
+      double column_max = 0;
       for (int k = lower_.outer[j]; k < lower_.outer[j + 1]; ++k) {
-        const double value = std::abs(values_[k]);
+        const int i = lower_.inner[k];
+        const double value = std::abs(values_[k]) * scale_[j] * scale_[i];
         column_max = std::max(column_max, value);
-        row_max[lower_.inner[k]] = std::max(row_max[lower_.inner[k]], value);
+        row_max_[i] = std::max(row_max_[i], value);
       }
-      row_max[j] = column_max;
+      row_max_[j] = std::max(row_max_[j], column_max);
     }
-    for (double& scale : sweep_scale_) scale = scale > 0 ? detail::power_of_two_below(1 / std::sqrt(scale)) : 1;
-    for (int j = 0; j < size(); ++j) {
-      for (int k = lower_.outer[j]; k < lower_.outer[j + 1]; ++k) values_[k] *= sweep_scale_[j] * sweep_scale_[lower_.inner[k]];
-    }
-    scale_.array() *= sweep_scale_.array();
+    for (int j = 0; j < size(); ++j) scale_[j] *= inverse_root_scale(row_max_[j]);
   }
-}
-
-Inertia SparseKkt::factor_values() {
-  if (sparse_) return sparse_->factor(values_.data());
-  dense_values_.setZero();
   for (int j = 0; j < size(); ++j) {
-    for (int k = lower_.outer[j]; k < lower_.outer[j + 1]; ++k) dense_values_(lower_.inner[k], j) = values_[k];
+    for (int k = lower_.outer[j]; k < lower_.outer[j + 1]; ++k) values_[k] *= scale_[j] * scale_[lower_.inner[k]];
   }
-  return dense_->factor(dense_values_);
 }
 
-void SparseKkt::apply_inverse(Vector& x) {
-  if (sparse_) return sparse_->solve_in_place(x.data());
-  padded_.head(size()) = x;
-  dense_->solve_in_place(padded_);
-  x = padded_.head(size());
-}
-
-// residual = r - K x;  (1.4) max_i |r - K x|_i / (|K| |x| + |r|)_i, the smallest relative change of K and r that makes x exact
-double SparseKkt::backward_error() {
+// residual = r - K x, and its size (1.4)
+BackwardError<double> SparseKkt::backward_error() {
   residual_ = rhs_;
   weight_ = rhs_.cwiseAbs();
   for (int j = 0; j < size(); ++j) {
@@ -134,9 +108,8 @@ double SparseKkt::backward_error() {
     residual_[j] -= sum;
     weight_[j] += weight;
   }
-  // a row whose terms all vanish beside x is measured against x: its own rounding is of that size
-  const double floor = std::max(size() * kEpsilon * solution_.lpNorm<Eigen::Infinity>(), std::numeric_limits<double>::min());
-  return (residual_.array().abs() / (weight_.array() + floor)).maxCoeff();
+  constexpr double floor = std::numeric_limits<double>::min();  // 0 / 0 is 0
+  return {(residual_.array().abs() / (weight_.array() + floor)).maxCoeff(), residual_.lpNorm<Eigen::Infinity>()};
 }
 
 void SparseKkt::solve(ConstVectorRef r_x, ConstVectorRef r_c, VectorRef dx, VectorRef dlambda) {
@@ -144,22 +117,9 @@ void SparseKkt::solve(ConstVectorRef r_x, ConstVectorRef r_c, VectorRef dx, Vect
   rhs_.head(n_) = scale_.head(n_).cwiseProduct(r_x);
   rhs_.tail(m_) = scale_.tail(m_).cwiseProduct(r_c);
   solution_ = rhs_;
-  apply_inverse(solution_);
+  ldlt_->solve_in_place(solution_.data());
 
-  // (1.3) x <- x + K^-1 (r - K x), while the error falls to half or less
-  double error = backward_error();
-  for (int step = 0; step < kRefinements && error > 4 * kEpsilon; ++step) {
-    previous_ = solution_;
-    apply_inverse(residual_);
-    solution_ += residual_;
-    const double next = backward_error();
-    if (!(next < error)) {
-      solution_ = previous_;
-      break;
-    }
-    if (next > error / 2) break;
-    error = next;
-  }
+  refine(solution_, residual_, previous_, kRefinements, [this](Vector& x) { ldlt_->solve_in_place(x.data()); }, [this] { return backward_error(); });
   dx = scale_.head(n_).cwiseProduct(solution_.head(n_));
   dlambda = scale_.tail(m_).cwiseProduct(solution_.tail(m_));
 }

@@ -3,16 +3,16 @@
 //     K = [ H + diag(sigma)    J'      ]  n        S K S = P' L D L' P
 //         [ J                 -diag(D) ]  m
 //
-// The patterns of H and J are fixed: order of elimination and memory are settled at construction. S equilibrates K, by powers of two. Small
-// systems are factored dense (dense_ldlt.hpp), others by fronts (multifrontal_ldlt.hpp). Equations: linear_algebra.md.
+// The patterns of H and J are fixed: order of elimination and memory are settled at construction. S equilibrates K, by powers of two.
+// Small systems need no path of their own: from 20 unknowns on fronts are as quick as dense_ldlt.hpp. Equations: linear_algebra.md.
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <vector>
 
 #include "tenon/core/sparse_pattern.hpp"
-#include "tenon/solvers/newton_kkt/dense_ldlt.hpp"
 #include "tenon/solvers/newton_kkt/multifrontal_ldlt.hpp"
+#include "tenon/solvers/newton_kkt/refinement.hpp"
 
 namespace tenon {
 
@@ -31,19 +31,15 @@ class SparseKkt {
   int size() const { return n_ + m_; }
   void assemble(const SparseMatrix& hessian, const SparseMatrix& jacobian, ConstVectorRef sigma, ConstVectorRef d);
   void equilibrate();
-  Inertia factor_values();
-  void apply_inverse(Vector& x);
-  double backward_error();
+  BackwardError<double> backward_error();
 
   int n_, m_;
   SparsePattern lower_;                              // of K, with its whole diagonal first in each column
   std::vector<int> hessian_places_, jacobian_places_;  // where their entries are in lower_
   Vector values_;                                    // of S K S
-  Vector scale_, sweep_scale_;
-  std::unique_ptr<DenseLdlt<double, Dynamic>> dense_;  // one of the two
-  std::unique_ptr<MultifrontalLdlt> sparse_;
-  DenseLdlt<double, Dynamic>::Storage dense_values_;
-  Vector rhs_, solution_, previous_, residual_, weight_, padded_;
+  Vector scale_, row_max_;
+  std::optional<MultifrontalLdlt> ldlt_;
+  Vector rhs_, solution_, previous_, residual_, weight_;
 };
 
 }  // namespace tenon
