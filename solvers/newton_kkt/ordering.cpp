@@ -16,7 +16,7 @@ namespace tenon {
 namespace {
 
 // Where untied minimum degree takes less than this share of the work, the delays it will cost are worth it.
-constexpr double kUntiedShare = 0.5;
+constexpr double kUntiedShare = 0.25;
 
 // partner[i] is the variable tied to row i or -1: rows with few choices choose first, and take a variable with few neighbours.
 std::vector<int> tie_rows(const Graph& graph, int n) {
