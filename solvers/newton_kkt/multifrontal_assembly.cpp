@@ -67,7 +67,7 @@ void MultifrontalLdlt::plan(Room room) {
       top[(tree_.depth[s] + 1) % 2] = begin[tree_.children[tree_.children_begin[s]]];
     }
   }
-  auto with_room = [&](std::size_t planned) { return std::max(room.times * planned, planned + room.least); };
+  auto with_room = [&](std::size_t planned) { return planned + std::clamp(room.times * planned, room.least, room.most); };
   factor_.reserve(with_room(factor_planned_));
   stack_[0].reserve(with_room(stack_planned_));
   stack_[1].reserve(with_room(stack_planned_));

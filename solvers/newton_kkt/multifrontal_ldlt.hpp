@@ -45,10 +45,11 @@ class Arena {
 
 class MultifrontalLdlt {
  public:
-  /// Memory for delays: so many times the plan, and no less than `least` numbers more. It costs nothing before it is touched.
+  /// Memory for delays, in numbers beyond the plan: so many times the plan, within bounds. It costs nothing before it is touched.
   struct Room {
-    std::size_t times = 6;
+    std::size_t times = 5;
     std::size_t least = 1 << 16;
+    std::size_t most = 1 << 26;
   };
 
   /// lower: the lower triangle of K with its whole diagonal; its first n rows are variables, the others constraints.
