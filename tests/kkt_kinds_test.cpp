@@ -46,12 +46,12 @@ void expect_solves(Kkt& kkt, const HessianType& hessian, const JacobianType& jac
     Vector dx(instance.n), dlambda(instance.m);
     AllocationCounter counter;
     const Inertia inertia = kkt.factor(hessian, jacobian, instance.sigma, instance.d);
-    const double backward_error = kkt.solve(r_x, r_c, dx, dlambda);
+    const double relative_residual = kkt.solve(r_x, r_c, dx, dlambda);
     const long allocations = counter.count();
     EXPECT_EQ(allocations, 0) << kind << ", " << instance.name;
     EXPECT_TRUE(dx.allFinite() && dlambda.allFinite()) << kind << ", " << instance.name;
-    // a singular matrix shows in its pivots or, rarely, in the backward error alone
-    if (expected && expected->zero > 0 && inertia.zero == 0 && backward_error > 1e-8) continue;
+    // a singular matrix shows in its pivots or, rarely, in the residual alone
+    if (expected && expected->zero > 0 && inertia.zero == 0 && relative_residual > 1e-4) continue;
     if (expected) {
       EXPECT_EQ(inertia, *expected) << kind << ", " << instance.name << ": " << text(inertia) << " for " << text(*expected);
     }
@@ -61,7 +61,6 @@ void expect_solves(Kkt& kkt, const HessianType& hessian, const JacobianType& jac
     const Vector error = (k * solution - r).cwiseAbs();
     const Vector allowed = 1e-12 * (k.cwiseAbs() * solution.cwiseAbs() + r.cwiseAbs());
     EXPECT_LE((error.array() / allowed.array()).maxCoeff(), 1) << kind << ", " << instance.name;
-    EXPECT_LE(backward_error, 1e-12) << kind << ", " << instance.name;
   }
 }
 

@@ -42,8 +42,8 @@ class DenseKkt {
     return ldlt_.factor(k_);
   }
 
-  /// K [dx; dlambda] = [r_x; r_c]. Returns the backward error by row (1.4): a few roundings if all is well; one that stays above 1e-8
-  /// says that K is singular to working precision although no pivot showed it. After zero > 0 the answer is finite but means little.
+  /// K [dx; dlambda] = [r_x; r_c]. Returns the residual relative to the right-hand side, both equilibrated, (1.5): rounding times condition
+  /// number. Towards 1 it says that K is singular although no pivot showed it. After zero > 0 the answer is finite but means little.
   template <class XType, class CType, class DxType, class DlambdaType>
   Scalar solve(const Eigen::MatrixBase<XType>& r_x, const Eigen::MatrixBase<CType>& r_c, DxType&& dx, DlambdaType&& dlambda);
 
@@ -127,11 +127,11 @@ Scalar DenseKkt<Scalar, N, M>::solve(const Eigen::MatrixBase<XType>& r_x, const 
   solution_ = rhs_;
   ldlt_.solve_in_place(solution_);
 
-  const Scalar error = refine(solution_, residual_, previous_, kRefinements,
+  const BackwardError<Scalar> error = refine(solution_, residual_, previous_, kRefinements,
                               [this](PaddedVector& x) { ldlt_.solve_in_place(x); }, [this] { return backward_error(); });
   for (int i = 0; i < n_; ++i) dx.coeffRef(i) = scale_[i] * solution_[i];
   for (int i = 0; i < m_; ++i) dlambda.coeffRef(i) = scale_[n_ + i] * solution_[n_ + i];
-  return error;
+  return error.largest / std::max(rhs_.template lpNorm<Eigen::Infinity>(), std::numeric_limits<Scalar>::min());  // (1.5)
 }
 
 }  // namespace tenon

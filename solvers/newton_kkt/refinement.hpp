@@ -23,10 +23,9 @@ struct BackwardError {
 };
 
 /// x: an approximate solution; it is improved. apply_inverse(v): v <- K^-1 v, approximately. measure(): sets `residual` to r - K x and
-/// returns how large it is. previous: storage. Returns the backward error by row that is left.
+/// returns how large it is. previous: storage. Returns the error that is left.
 template <class VectorType, class ApplyInverse, class Measure>
-typename VectorType::Scalar refine(VectorType& x, VectorType& residual, VectorType& previous, int steps, ApplyInverse apply_inverse,
-                                   Measure measure) {
+auto refine(VectorType& x, VectorType& residual, VectorType& previous, int steps, ApplyInverse apply_inverse, Measure measure) {
   using Scalar = typename VectorType::Scalar;
   BackwardError<Scalar> error = measure();
   for (int step = 0; step < steps && error.by_row > kRowError<Scalar>; ++step) {
@@ -42,7 +41,7 @@ typename VectorType::Scalar refine(VectorType& x, VectorType& residual, VectorTy
     error = next;
     if (slow) break;
   }
-  return error.by_row;
+  return error;
 }
 
 }  // namespace tenon

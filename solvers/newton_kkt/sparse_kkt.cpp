@@ -119,11 +119,11 @@ double SparseKkt::solve(ConstVectorRef r_x, ConstVectorRef r_c, VectorRef dx, Ve
   solution_ = rhs_;
   ldlt_->solve_in_place(solution_.data());
 
-  const double error = refine(solution_, residual_, previous_, kRefinements,
+  const BackwardError<double> error = refine(solution_, residual_, previous_, kRefinements,
                               [this](Vector& x) { ldlt_->solve_in_place(x.data()); }, [this] { return backward_error(); });
   dx = scale_.head(n_).cwiseProduct(solution_.head(n_));
   dlambda = scale_.tail(m_).cwiseProduct(solution_.tail(m_));
-  return error;
+  return error.largest / std::max(rhs_.lpNorm<Eigen::Infinity>(), std::numeric_limits<double>::min());  // (1.5)
 }
 
 }  // namespace tenon

@@ -24,8 +24,8 @@ class SparseKkt {
   /// hessian, jacobian: with these patterns; sigma: n, >= 0, up to 1e30; d: m, >= 0.
   Inertia factor(const SparseMatrix& hessian, const SparseMatrix& jacobian, ConstVectorRef sigma, ConstVectorRef d);
 
-  /// K [dx; dlambda] = [r_x; r_c]. Returns the backward error by row (1.4): a few roundings if all is well; one that stays above 1e-8
-  /// says that K is singular to working precision although no pivot showed it. After zero > 0 the answer is finite but means little.
+  /// K [dx; dlambda] = [r_x; r_c]. Returns the residual relative to the right-hand side, both equilibrated, (1.5): rounding times condition
+  /// number. Towards 1 it says that K is singular although no pivot showed it. After zero > 0 the answer is finite but means little.
   double solve(ConstVectorRef r_x, ConstVectorRef r_c, VectorRef dx, VectorRef dlambda);
 
  private:
