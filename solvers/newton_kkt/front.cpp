@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kThreshold = 0.01;          // u of (4.2)
 constexpr double kForcedThreshold = 1e-10;   // where columns may not be left over
-constexpr double kPerturbation = 1.5e-8;     // sqrt(eps), beside the largest entry of the column
+constexpr double kPerturbation = 1.5e-8;     // sqrt(eps) of (4.5)
 constexpr double kAlpha = 0.6403882032022076;  // (2.3)
 constexpr double kZero = 64 * std::numeric_limits<double>::epsilon();  // (2.5)
 constexpr double kTiny = 1e-150;       // of an equilibrated matrix, and still safe to square

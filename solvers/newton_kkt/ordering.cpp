@@ -5,12 +5,12 @@
 //
 // Source of the minimum degree: Amestoy, Davis, Duff, SIAM J. Matrix Anal. Appl. 17 (1996) 886, as implemented in Eigen.
 // Tied pairs: Duff, Pralet, SIAM J. Matrix Anal. Appl. 27 (2005) 313. Equations: linear_algebra.md section 3.
+#include "tenon/solvers/newton_kkt/elimination.hpp"
+
 #include <algorithm>
 #include <numeric>
 
 #include <Eigen/OrderingMethods>
-
-#include "tenon/solvers/newton_kkt/elimination.hpp"
 
 namespace tenon {
 namespace {
