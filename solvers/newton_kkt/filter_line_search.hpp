@@ -53,11 +53,17 @@ class FilterLineSearch {
                           kEtaPhi = Scalar(1e-8), kGammaAlpha = Scalar(0.05), kKappaSoc = Scalar(0.99), kErrorFall = Scalar(0.9), kNearSolution = Scalar(1e-2);
   static constexpr int kMaxCorrections = 4;
 
+  void move(const BarrierProblem<P>& barrier, const Iterate<P>& now, const Step<P>& step, Iterate<P>& trial) const {
+    trial.x = now.x + alpha_ * step.x;
+    trial.s = now.s + alpha_ * step.s;
+    barrier.x_box().keep_inside(trial.x.array());
+    barrier.s_box().keep_inside(trial.s.array());
+  }
+
   /// now + alpha step, evaluated and judged.
   bool try_point(BarrierProblem<P>& barrier, const Iterate<P>& now, const Step<P>& step, Scalar mu, Iterate<P>& trial) {
     ++trials_;
-    trial.x = now.x + alpha_ * step.x;
-    trial.s = now.s + alpha_ * step.s;
+    move(barrier, now, step, trial);
     trial.lambda = now.lambda + alpha_ * step.lambda;
     trial_finite_ = barrier.evaluate(trial);
     if (!trial_finite_) return false;
@@ -139,8 +145,7 @@ class FilterLineSearch {
     const Scalar rounding = 10 * std::numeric_limits<Scalar>::epsilon() * std::abs(phi);
     for (alpha_ = alpha_max; alpha_ >= alpha_max * Scalar(1e-10); alpha_ /= 2) {
       ++trials_;
-      trial.x = now.x + alpha_ * step.x;
-      trial.s = now.s + alpha_ * step.s;
+      move(barrier, now, step, trial);
       if (!barrier.evaluate(trial)) continue;
       barrier.let_rows_give_way(trial);
       if (barrier.barrier_objective(trial, mu) <= phi + Scalar(1e-4) * alpha_ * slope + rounding) {
