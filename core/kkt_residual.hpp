@@ -27,7 +27,6 @@ struct KktResidual {
 
 namespace detail {
 
-/// Distance of v to the bound that the sign of the multiplier points at, times the multiplier.
 /// max |multiplier| * distance to the bound that its sign points at; |multiplier| where that bound is absent; 0 where the two are equal.
 template <class Vec, class Multipliers>
 double complementarity(const Vec& v, const Vec& lower, const Vec& upper, const Multipliers& multiplier) {

@@ -142,7 +142,7 @@ class TickAllocator final : public Allocator {
     const Lanes astray = (a_linear_.array() - branch).cos().max(kLeastCosine);
     point_.x.template head<N>() = (u_linear_.array() * astray).max(throttle_lower_).min(throttle_upper_).matrix();
     point_.x.template tail<N>() = branch.matrix();
-    point_.lambda = linear_.effort_multipliers(wrench) * problem_.effort_scale();
+    point_.lambda = problem_.throttle_weight() * linear_.effort_multipliers(wrench);
     problem_.set_preload(point_.lambda);
   }
 
@@ -156,8 +156,10 @@ class TickAllocator final : public Allocator {
   }
 
   bool judge(const Wrench& wrench) {
-    guess_ << point_.x, point_.lambda;
-    predictor_.learn(guess_);
+    if (has_point_) {
+      guess_ << point_.x, point_.lambda;
+      predictor_.learn(guess_);
+    }
     out_.status = met(wrench) ? AllocationStatus::solved : AllocationStatus::best_effort;
     return true;
   }
@@ -188,7 +190,7 @@ class TickAllocator final : public Allocator {
 
   void start_at_linear(const Wrench& wrench) {
     point_.x << u_linear_, a_linear_;
-    point_.lambda = linear_.effort_multipliers(wrench);
+    point_.lambda = problem_.throttle_weight() * linear_.effort_multipliers(wrench);
     point_.z.setZero();
   }
 
@@ -227,7 +229,7 @@ class TickAllocator final : public Allocator {
     out_.angle = out_.angle.array().max(angle_lower_).min(angle_upper_).matrix();
     out_.error = linear_.wrench(out_.throttle, out_.angle) - wrench;
     out_.residual = kInfinity<double>;
-    point_.lambda = linear_.effort_multipliers(wrench);
+    point_.lambda = problem_.throttle_weight() * linear_.effort_multipliers(wrench);
   }
 
   static constexpr int kMaxIterations = 60;

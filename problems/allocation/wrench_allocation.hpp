@@ -79,10 +79,16 @@ class WrenchAllocation {
     w_ = scaled(weights_, scale);
   }
   S effort_scale() const { return effort_scale_; }
+  S throttle_weight() const { return w_.u; }  // W_u, times the effort scale
 
   void set_preload(const Wrench6& lambda) { preload_ = lambda; }
 
-  void fail_rotor(int i) { failed_[std::size_t(i)] = true; }
+  void fail_rotor(int i) {
+    failed_[std::size_t(i)] = true;
+    for (Polynomial* map : {&thrust_, &torque_}) {
+      for (Lanes& coefficients : *map) coefficients[i] = 0;
+    }
+  }
   void stick_servo(int i, S angle) {
     stuck_[std::size_t(i)] = true;
     stuck_angle_[i] = angle;

@@ -125,6 +125,12 @@ class BarrierProblem {
   /// theta = |r_c|_1
   Scalar violation(const Iterate<P>& at) const { return row_residual(at).template lpNorm<1>(); }
 
+  /// Largest |c - s| of the rows that cannot give way.
+  Scalar hard_violation(const Iterate<P>& at) const {
+    if (m_ == 0) return 0;
+    return (bounds_.compliance.array() == 0).select((at.constraints - at.s).array().abs(), Scalar(0)).maxCoeff();
+  }
+
   /// phi of `at` for this mu.
   Scalar barrier_objective(const Iterate<P>& at, Scalar mu) const {
     Scalar phi = at.objective;

@@ -21,9 +21,9 @@ class Filter {
     return true;
   }
 
-  /// Forbids what is not better than this point by the margins gamma_theta = gamma_phi = 1e-5 of its violation.
+  /// Forbids what is not better than this point by the margins gamma_theta = 1e-5, gamma_phi = 1e-8 of its violation.
   void add(Scalar theta, Scalar phi) {
-    const Entry entry{(1 - Scalar(1e-5)) * theta, phi - Scalar(1e-5) * theta};
+    const Entry entry{(1 - Scalar(1e-5)) * theta, phi - Scalar(1e-8) * theta};
     int kept = 0;
     for (int k = 0; k < size_; ++k) {
       const bool dominated = entries_[k].theta >= entry.theta && entries_[k].phi >= entry.phi;

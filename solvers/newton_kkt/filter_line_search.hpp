@@ -29,6 +29,9 @@ class FilterLineSearch {
   int trials() const { return trials_; }
   Scalar alpha() const { return alpha_; }
 
+  /// Whether the last step taken is a second-order correction, whose multiplier steps are its own.
+  bool corrected() const { return corrected_last_; }
+
   /// Looks for an acceptable `trial` = now + alpha step, alpha <= alpha_max; `step` becomes the one taken. False where there is none.
   bool search(BarrierProblem<P>& barrier, NewtonSystem<P, Kkt>& system, const Iterate<P>& now, Step<P>& step, Scalar alpha_max,
               Scalar alpha_dual, Scalar tau, Scalar mu, Iterate<P>& trial) {
@@ -37,13 +40,16 @@ class FilterLineSearch {
     slope_ = barrier.barrier_slope(now, step, mu);
     trials_ = 0;
 
+    corrected_last_ = false;
     alpha_ = alpha_max;
     if (try_point(barrier, now, step, mu, trial)) return true;
-    for (const Scalar alpha_min = smallest_step(); alpha_ >= alpha_min; alpha_ /= 2) {
-      if (trials_ > 1 && try_point(barrier, now, step, mu, trial)) return true;
-      if (trials_ > 1 || !trial_finite_) continue;
+    if (trial_finite_) {
       if (error_falls(barrier, now, step, alpha_dual, mu, trial)) return true;
       if (trial_theta_ >= theta_ && correct(barrier, system, now, step, tau, mu, trial)) return true;
+    }
+    const Scalar alpha_min = smallest_step();
+    while ((alpha_ /= 2) >= alpha_min) {
+      if (try_point(barrier, now, step, mu, trial)) return true;
     }
     return barrier.all_rows_compliant() && give_way(barrier, now, step, alpha_max, mu, trial);
   }
@@ -78,7 +84,10 @@ class FilterLineSearch {
     const Scalar error = barrier.error(now, mu).max_scaled();
     if (!(error < kNearSolution)) return false;
     take_dual_step(now, step, alpha_dual, trial);
-    return barrier.linearise(trial) && barrier.error(trial, mu).max_scaled() <= kErrorFall * error;
+    if (barrier.linearise(trial) && barrier.error(trial, mu).max_scaled() <= kErrorFall * error) return true;
+    barrier.return_to(now);
+    barrier.linearise(now);
+    return false;
   }
 
   /// [WB06, eq. 18-20, with the rounding of phi allowed for]
@@ -124,6 +133,7 @@ class FilterLineSearch {
                         barrier.s_box().max_step(now.s.array(), corrected_.s.array(), tau));
       if (try_point(barrier, now, corrected_, mu, trial)) {
         std::swap(step, corrected_);
+        corrected_last_ = true;
         return true;
       }
       if (!trial_finite_ || trial_theta_ > kKappaSoc * theta_before) break;
@@ -160,7 +170,7 @@ class FilterLineSearch {
   Scalar theta_max_ = 0, theta_min_ = 0;
   Scalar theta_ = 0, phi_ = 0, slope_ = 0;  // of the current iterate
   Scalar alpha_ = 0, trial_theta_ = 0;
-  bool trial_finite_ = false;
+  bool trial_finite_ = false, corrected_last_ = false;
   int trials_ = 0;
   Step<P> corrected_;
   VectorMOf<P> soc_residual_;

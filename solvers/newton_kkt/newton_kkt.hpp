@@ -89,6 +89,8 @@ class NewtonKkt {
   const VectorMOf<P>& constraints() const { return now_->constraints; }
 
  private:
+  using VectorN = VectorNOf<P>;
+
   std::optional<Status> start(PointOf<P>& point) {
     now_->x = point.x;
     now_->lambda = point.lambda;
@@ -168,8 +170,12 @@ class NewtonKkt {
     const Scalar tau = mu_.tau();
     alpha_primal_ = std::min(barrier_.x_box().max_step(now_->x.array(), step_.x.array(), tau),
                              barrier_.s_box().max_step(now_->s.array(), step_.s.array(), tau));
-    alpha_dual_ = std::min(barrier_.x_box().max_multiplier_step(now_->zx, step_.zx, tau),
-                           barrier_.s_box().max_multiplier_step(now_->zs, step_.zs, tau));
+    limit_multiplier_step();
+  }
+
+  void limit_multiplier_step() {
+    alpha_dual_ = std::min(barrier_.x_box().max_multiplier_step(now_->zx, step_.zx, mu_.tau()),
+                           barrier_.s_box().max_multiplier_step(now_->zs, step_.zs, mu_.tau()));
   }
 
   /// A warm start has a small mu and a guess of the active bounds. Where a bound that it did not guess cuts the step short, the iterates would
@@ -183,8 +189,12 @@ class NewtonKkt {
     ++iterations_;
     mu_.start(kRecentre, tolerance());
     barrier_.soften_rows(mu_.at_end() ? 0 : mu_.value());
+    trial_->x = now_->x;
     barrier_.x_box().push_inside(now_->x.array(), kColdPush, kColdPush);
-    barrier_.evaluate(*now_);
+    if (!barrier_.evaluate(*now_)) {  // the inside cannot be evaluated: stay
+      now_->x = trial_->x;
+      barrier_.evaluate(*now_);
+    }
     set_slacks(kColdPush);
     barrier_.x_box().centre(now_->x.array(), mu_.value(), now_->zx);
     barrier_.s_box().centre(now_->s.array(), mu_.value(), now_->zs);
@@ -200,33 +210,42 @@ class NewtonKkt {
   /// No acceptable step from here: a point with less violation, or the end.
   std::optional<Status> restore() {
     barrier_.return_to(*now_);
-    const Scalar theta = barrier_.violation(*now_);
     if constexpr (std::is_same_v<Rescue, NoRestoration>) {
       return no_progress();
     } else {
-      if (error_.primal <= tolerance() || theta == 0) return no_progress();
-      line_search_.forbid(theta, barrier_.barrier_objective(*now_, mu_.value()));
-      const auto good_enough = [&](const VectorNOf<P>& x) {
+      const Scalar theta = barrier_.hard_violation(*now_);
+      if (theta <= tolerance()) return no_progress();
+      line_search_.forbid(barrier_.violation(*now_), barrier_.barrier_objective(*now_, mu_.value()));
+      trial_->lambda = now_->lambda;
+      const auto violation = [&](const VectorN& x) {
         trial_->x = x;
-        if (!barrier_.evaluate(*trial_)) return false;
+        if (!barrier_.evaluate(*trial_)) return kInfinity<Scalar>;
         follow_rows(*trial_);
-        const Scalar violation = barrier_.violation(*trial_);
-        return violation <= kRestored * theta && line_search_.allows(violation, barrier_.barrier_objective(*trial_, mu_.value()));
+        return barrier_.hard_violation(*trial_);
+      };
+      const auto good_enough = [&](const VectorN& x) {
+        return violation(x) <= kRestored * theta &&
+               line_search_.allows(barrier_.violation(*trial_), barrier_.barrier_objective(*trial_, mu_.value()));
       };
       const double time_left = options_.time_limit - (std::isfinite(options_.time_limit) ? elapsed() : 0.0);
-      const auto ended = restoration_.restore(now_->x, mu_.value(), error_.primal, options_.max_iterations - iterations_, time_left, good_enough);
+      const auto ended = restoration_.restore(now_->x, std::max(mu_.value(), theta), options_.max_iterations - iterations_, time_left,
+                                              violation, good_enough);
       iterations_ += 1 + restoration_.iterations();
-      now_->x = restoration_.x();
-      if (!barrier_.evaluate(*now_)) return Status::numerical_failure;
-      follow_rows(*now_);
-      barrier_.x_box().centre(now_->x.array(), mu_.value(), now_->zx);
-      barrier_.s_box().centre(now_->s.array(), mu_.value(), now_->zs);
-      now_->lambda.setZero();
-      barrier_.linearise(*now_);
-      if (!system_.least_squares_multipliers(barrier_, *now_)) now_->lambda.setZero();
-      barrier_.update_stationarity(*now_);
-      return ended;
+      return go_on_from_restored(ended);
     }
+  }
+
+  std::optional<Status> go_on_from_restored(std::optional<Status> ended) {
+    now_->x = restoration_.x();
+    if (!barrier_.evaluate(*now_)) return Status::numerical_failure;
+    follow_rows(*now_);
+    barrier_.x_box().centre(now_->x.array(), mu_.value(), now_->zx);
+    barrier_.s_box().centre(now_->s.array(), mu_.value(), now_->zs);
+    now_->lambda.setZero();
+    barrier_.linearise(*now_);
+    if (!system_.least_squares_multipliers(barrier_, *now_)) now_->lambda.setZero();
+    barrier_.update_stationarity(*now_);
+    return ended;
   }
 
   /// Slacks at their rows' values, inside their bounds.
@@ -238,6 +257,7 @@ class NewtonKkt {
 
   void accept() {
     alpha_primal_ = line_search_.alpha();
+    if (line_search_.corrected()) limit_multiplier_step();
     const Scalar largest = (step_.x.array().abs() / (1 + now_->x.array().abs())).maxCoeff() * alpha_primal_;
     tiny_steps_ = largest < 10 * std::numeric_limits<Scalar>::epsilon() ? tiny_steps_ + 1 : 0;
 
@@ -251,7 +271,7 @@ class NewtonKkt {
 
   /// No acceptable step is left: good enough, or a failure.
   Status no_progress() const {
-    return error_.max_scaled() <= kAcceptableFactor * tolerance() ? Status::acceptable : Status::numerical_failure;
+    return error_.max_scaled() <= kAcceptableFactor * tolerance() && barrier_.rows_are_firm() ? Status::acceptable : Status::numerical_failure;
   }
 
   Result finish(PointOf<P>& point, Status status) {

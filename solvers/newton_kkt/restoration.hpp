@@ -23,10 +23,12 @@ class Restoration {
   int iterations() const { return iterations_; }
   const VectorNOf<P>& x() const { return point_.x; }
 
-  /// From x, with a barrier of at least mu. `enough(x)` is asked at each iterate; restored when it says yes.
+  /// From x, with a barrier parameter of about mu. `enough(x)` is asked at each iterate: restored when it says yes. `violation(x)` is the
+  /// largest violation of a hard row.
   /// Ends with: nullopt (x() is a better point), infeasible, or why it could not go on.
-  template <class Enough>
-  std::optional<Status> restore(const VectorNOf<P>& x, Scalar mu, Scalar violation, int max_iterations, double time_limit, Enough&& enough) {
+  template <class Violation, class Enough>
+  std::optional<Status> restore(const VectorNOf<P>& x, Scalar mu, int max_iterations, double time_limit,
+                                Violation&& violation, Enough&& enough) {
     iterations_ = 0;
     point_.x = x;
     Scalar zeta = kFirstZeta;
@@ -34,7 +36,7 @@ class Restoration {
       feasibility_.set_reference(point_.x, zeta);
       point_.lambda.setZero();
       point_.z.setZero();
-      solver_.options().initial_mu = double(std::clamp(std::max(mu, violation), Scalar(1e-6), Scalar(1e3)));
+      solver_.options().initial_mu = double(std::clamp(mu, Scalar(1e-6), Scalar(1e3)));
       solver_.options().max_iterations = max_iterations - iterations_;
       solver_.options().time_limit = time_limit;
       const Result result = solver_.solve(point_, [&](const auto& iterate) { return enough(iterate.x); });
@@ -42,8 +44,8 @@ class Restoration {
       if (result.status == Status::stopped) return std::nullopt;
       if (!succeeded(result.status)) return result.status;
 
-      // converged: lambda is the violation, and zeta W^2 (x - x_R) what the proximal term still pulls
-      const Scalar left = point_.lambda.template lpNorm<Eigen::Infinity>();
+      // converged: what is left, against zeta W^2 (x - x_R), the force with which the proximal term still holds x back
+      const Scalar left = violation(point_.x);
       if (left <= Scalar(kAcceptableFactor * solver_.options().tolerance)) return std::nullopt;
       if (feasibility_.pull(point_.x) <= kFaintPull * left) return Status::infeasible;
     }
