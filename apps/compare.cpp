@@ -43,8 +43,7 @@ std::vector<std::string> table_row(const std::string& problem, const Measurement
 
 }  // namespace
 
-std::vector<SolverDescription> chosen_solvers(const Arguments& arguments) {
-  const std::vector<SolverDescription> known = list_solvers();
+std::vector<SolverDescription> chosen_solvers(const Arguments& arguments, const std::vector<SolverDescription>& known) {
   std::vector<SolverDescription> chosen;
   if (!arguments.solvers) {
     std::copy_if(known.begin(), known.end(), std::back_inserter(chosen), [](const SolverDescription& s) { return s.available; });
@@ -63,6 +62,19 @@ std::vector<SolverDescription> chosen_solvers(const Arguments& arguments) {
     chosen.push_back(*at);
   }
   return chosen;
+}
+
+Json solvers_json(const std::vector<SolverDescription>& solvers) {
+  Json list = Json::array();
+  for (const SolverDescription& s : solvers) {
+    list.push(Json::object().set("name", s.name).set("description", s.description).set("options", s.options));
+  }
+  return list;
+}
+
+void print_solvers(const std::vector<SolverDescription>& solvers) {
+  for (const SolverDescription& s : solvers)
+    fmt::print("{}: {}; {}\n", s.name, s.description, s.options.empty() ? "no further options" : s.options);
 }
 
 int run_compare(const Arguments& arguments) {
@@ -100,15 +112,11 @@ int run_compare(const Arguments& arguments) {
     }
   }
   if (arguments.json) {
-    Json used = Json::array();
-    for (const SolverDescription& s : solvers) {
-      used.push(Json::object().set("name", s.name).set("description", s.description).set("options", s.options));
-    }
     print(Json::object()
               .set("schema", 1)
               .set("tolerance", options.tolerance)
               .set("timed_runs", kTimedRuns)
-              .set("solvers", used)
+              .set("solvers", solvers_json(solvers))
               .set("results", rows));
     return kFinished;
   }
@@ -116,8 +124,7 @@ int run_compare(const Arguments& arguments) {
   fmt::print(
       "evaluations: objective/gradient/constraints/Jacobian/Hessian of one solve; residual: the largest of the unscaled KKT residual\n");
   fmt::print("time: the solve alone, median of {}; tolerance {} for all, printing off\n", kTimedRuns, options.tolerance);
-  for (const SolverDescription& s : solvers)
-    fmt::print("{}: {}; {}\n", s.name, s.description, s.options.empty() ? "no further options" : s.options);
+  print_solvers(solvers);
   for (const std::string& refusal : refusals) fmt::print("{}\n", refusal);
   return kFinished;
 }
