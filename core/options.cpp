@@ -12,6 +12,9 @@ void validate(const Options& options) {
   if (options.max_iterations < 0) {
     throw std::invalid_argument("option max_iterations is " + std::to_string(options.max_iterations) + " (expected 0 or more)");
   }
+  if (!(options.initial_mu >= 0)) {
+    throw std::invalid_argument("option initial_mu is " + std::to_string(options.initial_mu) + " (expected 0 or more)");
+  }
   if (!(options.time_limit >= 0)) {
     throw std::invalid_argument("option time_limit is " + std::to_string(options.time_limit) + " s (expected 0 or more)");
   }

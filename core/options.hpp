@@ -14,6 +14,8 @@ struct Options {
   double time_limit = std::numeric_limits<double>::infinity();  // s
   bool warm_start = false;       // the point's lambda and z are a guess worth keeping: start near them, with a small barrier parameter
 
+  double initial_mu = 0;         // first barrier parameter of an interior-point method; 0: the solver's choice
+
   /// Called at every iterate, the first included; return false to stop there (Status::stopped).
   std::function<bool(const Iteration&)> on_iteration = nullptr;
 };

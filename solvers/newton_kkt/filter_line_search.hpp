@@ -22,6 +22,10 @@ class FilterLineSearch {
     theta_min_ = Scalar(1e-4) * std::max(Scalar(1), theta);
   }
 
+  /// For restoration: leave the present point for good; may a point be where it is?
+  void forbid(Scalar theta, Scalar phi) { filter_.add(theta, phi); }
+  bool allows(Scalar theta, Scalar phi) const { return std::isfinite(phi) && filter_.accepts(theta, phi); }
+
   int trials() const { return trials_; }
   Scalar alpha() const { return alpha_; }
 

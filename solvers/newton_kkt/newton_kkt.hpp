@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "tenon/core/options.hpp"
@@ -16,7 +17,16 @@
 
 namespace tenon {
 
-template <NonlinearProgram P, class Kkt = KktOf<P>, class Clock = std::chrono::steady_clock>
+template <NonlinearProgram P>
+class Restoration;
+
+/// In the place of Restoration: where the line search finds nothing, the solve ends.
+struct NoRestoration {
+  template <class P>
+  NoRestoration(const P&, const Options&) {}
+};
+
+template <NonlinearProgram P, class Kkt = KktOf<P>, class Rescue = Restoration<P>, class Clock = std::chrono::steady_clock>
 class NewtonKkt {
  public:
   using Scalar = typename P::Scalar;
@@ -27,6 +37,7 @@ class NewtonKkt {
         options_(std::move(options)),
         barrier_(problem),
         system_(problem),
+        restoration_(problem, options_),
         line_search_(barrier_.n(), barrier_.m()),
         now_(barrier_.n(), barrier_.m()),
         trial_(barrier_.n(), barrier_.m()),
@@ -34,20 +45,33 @@ class NewtonKkt {
 
   /// Starts from `point`, ends in it. Allocates nothing, throws nothing.
   Result solve(PointOf<P>& point) {
+    return solve(point, [](const Iterate<P>&) { return false; });
+  }
+
+  /// The same; `enough(iterate)` ends it with Status::stopped.
+  template <class Enough>
+  Result solve(PointOf<P>& point, Enough&& enough) {
     begin_ = Clock::now();
     std::optional<Status> ended = start(point);
     while (!ended) {
       measure();
       if ((ended = stop())) break;
+      if (enough(std::as_const(now_))) {
+        ended = Status::stopped;
+        break;
+      }
       update_barrier();
-      if ((ended = factor())) break;
+      if (!factor()) {
+        if ((ended = restore())) break;
+        continue;
+      }
       compute_step();
       if (warm_start_hits_a_wall()) {
         recentre();
         continue;
       }
-      if ((ended = search())) break;
-      accept();
+      if (search()) accept();
+      else if ((ended = restore())) break;
     }
     return finish(point, *ended);
   }
@@ -77,7 +101,6 @@ class NewtonKkt {
     return std::nullopt;
   }
 
-  /// Slacks start at their rows' values, inside their bounds.
   void set_slacks(Scalar push) {
     const auto& box = barrier_.s_box();
     now_.s = (box.free_mask() > 0).select(now_.constraints, now_.s);
@@ -85,7 +108,7 @@ class NewtonKkt {
   }
 
   void cold_multipliers() {
-    mu_.start(BarrierParameter<Scalar>::kInitial, tolerance());
+    mu_.start(options_.initial_mu > 0 ? Scalar(options_.initial_mu) : BarrierParameter<Scalar>::kInitial, tolerance());
     barrier_.x_box().fill(now_.zx, 1);
     barrier_.s_box().fill(now_.zs, 1);
     if (!system_.least_squares_multipliers(barrier_, now_)) now_.lambda.setZero();
@@ -93,10 +116,10 @@ class NewtonKkt {
   }
 
   void warm_multipliers(const PointOf<P>& point) {
-    mu_.start(0, tolerance());
+    mu_.start(Scalar(options_.initial_mu), tolerance());
     barrier_.x_box().split(now_.x.array(), point.z.array(), mu_.value(), now_.zx);
     barrier_.s_box().split(now_.s.array(), point.lambda.array(), mu_.value(), now_.zs);
-    mu_.start(std::min(barrier_.mean_complementarity(now_), BarrierParameter<Scalar>::kInitial), tolerance());
+    if (options_.initial_mu == 0) mu_.start(std::min(barrier_.mean_complementarity(now_), BarrierParameter<Scalar>::kInitial), tolerance());
   }
 
   void measure() {
@@ -125,10 +148,9 @@ class NewtonKkt {
     }
   }
 
-  std::optional<Status> factor() {
+  bool factor() {
     barrier_.evaluate_hessian(now_);
-    if (system_.factor(barrier_, now_, mu_.value())) return std::nullopt;
-    return Status::numerical_failure;
+    return system_.factor(barrier_, now_, mu_.value());
   }
 
   void compute_step() {
@@ -160,14 +182,49 @@ class NewtonKkt {
     line_search_.start(barrier_.violation(now_));
   }
 
-  std::optional<Status> search() {
-    if (!step_.x.allFinite() || !step_.lambda.allFinite()) return Status::numerical_failure;
+  bool search() {
+    if (!step_.x.allFinite() || !step_.lambda.allFinite()) return false;
     const Scalar error = barrier_.error(now_, mu_.value()).max_scaled();
-    if (line_search_.search(barrier_, system_, now_, step_, alpha_primal_, alpha_dual_, mu_.tau(), mu_.value(), error, trial_)) {
-      return std::nullopt;
-    }
+    return line_search_.search(barrier_, system_, now_, step_, alpha_primal_, alpha_dual_, mu_.tau(), mu_.value(), error, trial_);
+  }
+
+  /// No acceptable step from here: a point with less violation, or the end.
+  std::optional<Status> restore() {
     barrier_.return_to(now_);
-    return no_progress();
+    const Scalar theta = barrier_.violation(now_);
+    if constexpr (std::is_same_v<Rescue, NoRestoration>) {
+      return no_progress();
+    } else {
+      if (error_.primal <= tolerance() || theta == 0) return no_progress();
+      line_search_.forbid(theta, barrier_.barrier_objective(now_, mu_.value()));
+      const auto good_enough = [&](const VectorNOf<P>& x) {
+        trial_.x = x;
+        if (!barrier_.evaluate(trial_)) return false;
+        follow_rows(trial_);
+        const Scalar violation = barrier_.violation(trial_);
+        return violation <= kRestored * theta && line_search_.allows(violation, barrier_.barrier_objective(trial_, mu_.value()));
+      };
+      const double time_left = options_.time_limit - (std::isfinite(options_.time_limit) ? elapsed() : 0.0);
+      const auto ended = restoration_.restore(now_.x, mu_.value(), error_.primal, options_.max_iterations - iterations_, time_left, good_enough);
+      iterations_ += 1 + restoration_.iterations();
+      now_.x = restoration_.x();
+      if (!barrier_.evaluate(now_)) return Status::numerical_failure;
+      follow_rows(now_);
+      barrier_.x_box().centre(now_.x.array(), mu_.value(), now_.zx);
+      barrier_.s_box().centre(now_.s.array(), mu_.value(), now_.zs);
+      now_.lambda.setZero();
+      barrier_.linearise(now_);
+      if (!system_.least_squares_multipliers(barrier_, now_)) now_.lambda.setZero();
+      barrier_.update_stationarity(now_);
+      return ended;
+    }
+  }
+
+  /// Slacks at their rows' values, inside their bounds.
+  void follow_rows(Iterate<P>& at) const {
+    const auto& box = barrier_.s_box();
+    at.s = (box.free_mask() > 0).select(at.constraints, now_.s);
+    box.push_inside(at.s.array(), kColdPush, kColdPush);
   }
 
   void accept() {
@@ -215,12 +272,13 @@ class NewtonKkt {
   static constexpr Scalar kWarmPush = Scalar(1e-6);
   static constexpr Scalar kWall = Scalar(0.3), kRecentre = Scalar(1e-3);
   static constexpr Scalar kDivergence = Scalar(1e20);
-  static constexpr Scalar kAcceptableFactor = 100;
+  static constexpr Scalar kRestored = Scalar(0.9);   // kappa_resto of [WB06, sec. 3.3]
 
   const P& problem_;
   Options options_;
   BarrierProblem<P> barrier_;
   NewtonSystem<P, Kkt> system_;
+  Rescue restoration_;
   FilterLineSearch<P, Kkt> line_search_;
   BarrierParameter<Scalar> mu_;
   Iterate<P> now_, trial_;
@@ -233,3 +291,5 @@ class NewtonKkt {
 };
 
 }  // namespace tenon
+
+#include "tenon/solvers/newton_kkt/restoration.hpp"
