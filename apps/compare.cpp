@@ -79,11 +79,11 @@ void print_solvers(const std::vector<SolverDescription>& solvers) {
 
 int run_compare(const Arguments& arguments) {
   const Options options = arguments.options();
-  const std::vector<SolverDescription> solvers = chosen_solvers(arguments);
   if (std::any_of(arguments.names.begin(), arguments.names.end(), is_vehicle)) {
     if (arguments.names.size() > 1) throw std::invalid_argument("compare: a vehicle stands alone (expected one vehicle, or problems)");
     return compare_vehicle(arguments.names.front(), arguments);
   }
+  const std::vector<SolverDescription> solvers = chosen_solvers(arguments);
   for (const std::string& name : arguments.names) static_cast<void>(find_problem(name));
 
   Table table({"problem", "solver", "status", "objective", "residual", "iterations", "evaluations", "time"});

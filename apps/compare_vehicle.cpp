@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "tenon/apps/allocators/allocation_row.hpp"
-#include "tenon/apps/allocators/with_rotors.hpp"
 #include "tenon/apps/compare.hpp"
 #include "tenon/apps/interrupt.hpp"
 #include "tenon/apps/progress.hpp"
@@ -38,10 +37,6 @@ std::vector<SolverDescription> solvers_of_rows() {
 }
 
 }  // namespace
-
-std::unique_ptr<AllocationRow> make_allocation_row(const Vehicle& vehicle, const Options& options) {
-  return with_rotors(vehicle.num_rotors(), [&](auto rotors) { return make_allocation_row_of_size<rotors>(vehicle, options); });
-}
 
 int compare_vehicle(const std::string& name, const Arguments& arguments) {
   Vehicle vehicle = load_vehicle(name, arguments.set).vehicle;

@@ -42,8 +42,8 @@ const Allocation& TextbookAllocator::allocate(const Wrench& wrench, double dt) {
   problem_.set_wrench(wrench);
   if (has_previous_) problem_.set_previous(previous_.array(), dt);
   else problem_.forget_previous();
-  linear_.solve(wrench, previous_, u_linear_, a_linear_);
   const auto start_at_linear = [&] {
+    linear_.solve(wrench, previous_, u_linear_, a_linear_);
     point_.x << u_linear_, a_linear_;
     point_.lambda = linear_.effort_multipliers(wrench);
   };
