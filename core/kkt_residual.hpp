@@ -28,16 +28,24 @@ struct KktResidual {
 namespace detail {
 
 /// Distance of v to the bound that the sign of the multiplier points at, times the multiplier.
-template <class Scalar>
-Scalar complementarity(Scalar v, Scalar lower, Scalar upper, Scalar multiplier) {
-  if (lower == upper || multiplier == 0) return 0;
-  const Scalar bound = multiplier > 0 ? upper : lower;
-  return std::isinf(bound) ? std::abs(multiplier) : std::abs(multiplier * (v - bound));
+/// max |multiplier| * distance to the bound that its sign points at; |multiplier| where that bound is absent; 0 where the two are equal.
+template <class Vec, class Multipliers>
+double complementarity(const Vec& v, const Vec& lower, const Vec& upper, const Multipliers& multiplier) {
+  double largest = 0;
+  for (Eigen::Index i = 0; i < v.size(); ++i) {
+    if (lower[i] == upper[i]) continue;
+    const double bound = multiplier[i] > 0 ? upper[i] : lower[i], size = std::abs(multiplier[i]);
+    largest = std::max(largest, std::isinf(bound) ? size : size * std::abs(v[i] - bound));
+  }
+  return largest;
 }
 
-template <class Scalar>
-Scalar violation(Scalar v, Scalar lower, Scalar upper) {
-  return std::isnan(v) ? kInfinity<Scalar> : std::max({lower - v, v - upper, Scalar(0)});
+/// max violation of lower <= v <= upper; infinite where v is not a number.
+template <class Vec>
+double violation(const Vec& v, const Vec& lower, const Vec& upper) {
+  if (v.size() == 0) return 0;
+  if (!(v.array() == v.array()).all()) return kInfinity<double>;
+  return std::max(0.0, double((lower - v).cwiseMax(v - upper).maxCoeff()));
 }
 
 }  // namespace detail
@@ -48,25 +56,16 @@ KktResidual kkt_residual(const BasicPoint<Scalar, N, M>& point, const BasicBound
                          const Eigen::Matrix<Scalar, N, 1>& gradient, const Eigen::Matrix<Scalar, M, 1>& constraints,
                          const JacobianType& jacobian) {
   KktResidual residual;
-  Scalar multiplier_sum = 0;
   const auto n = point.x.size(), m = point.lambda.size();
+  Eigen::Matrix<Scalar, N, 1> stationarity = gradient + point.z;
+  if (m > 0) stationarity.noalias() += jacobian.transpose() * point.lambda;
+  residual.stationarity = stationarity.allFinite() ? double(stationarity.template lpNorm<Eigen::Infinity>()) : kInfinity<double>;
 
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const Scalar rows = m == 0 ? Scalar(0) : Scalar(jacobian.col(j).dot(point.lambda));  // Eigen's sparse dot asserts a length above 0
-    const Scalar stationarity = gradient[j] + rows + point.z[j];
-    residual.stationarity = std::max<double>(residual.stationarity, std::isnan(stationarity) ? kInfinity<Scalar> : std::abs(stationarity));
-    residual.primal = std::max<double>(residual.primal, detail::violation(point.x[j], bounds.x_lower[j], bounds.x_upper[j]));
-    residual.complementarity = std::max<double>(
-        residual.complementarity, detail::complementarity(point.x[j], bounds.x_lower[j], bounds.x_upper[j], point.z[j]));
-    multiplier_sum += std::abs(point.z[j]);
-  }
-  for (Eigen::Index i = 0; i < m; ++i) {
-    const Scalar row = constraints[i] - bounds.compliance[i] * (point.lambda[i] - bounds.preload[i]);
-    residual.primal = std::max<double>(residual.primal, detail::violation(row, bounds.c_lower[i], bounds.c_upper[i]));
-    residual.complementarity = std::max<double>(
-        residual.complementarity, detail::complementarity(row, bounds.c_lower[i], bounds.c_upper[i], point.lambda[i]));
-    multiplier_sum += std::abs(point.lambda[i]);
-  }
+  const Eigen::Matrix<Scalar, M, 1> rows = constraints - bounds.compliance.cwiseProduct(point.lambda - bounds.preload);
+  residual.primal = std::max(detail::violation(point.x, bounds.x_lower, bounds.x_upper), detail::violation(rows, bounds.c_lower, bounds.c_upper));
+  residual.complementarity = std::max(detail::complementarity(point.x, bounds.x_lower, bounds.x_upper, point.z),
+                                      detail::complementarity(rows, bounds.c_lower, bounds.c_upper, point.lambda));
+  const double multiplier_sum = double(point.z.template lpNorm<1>() + point.lambda.template lpNorm<1>());
   constexpr double kMultiplierScale = 100;  // s_max
   residual.scale = std::max(kMultiplierScale, double(multiplier_sum) / double(std::max<Eigen::Index>(1, n + m))) / kMultiplierScale;
   return residual;

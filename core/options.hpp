@@ -11,6 +11,7 @@ namespace tenon {
 struct Options {
   double tolerance = 1e-8;       // a solve ends when every scaled residual is at most this
   int max_iterations = 3000;
+  int min_iterations = 0;        // at least so many steps, even from a start that meets the tolerance
   double time_limit = std::numeric_limits<double>::infinity();  // s
   bool warm_start = false;       // the point's lambda and z are a guess worth keeping: start near them, with a small barrier parameter
 

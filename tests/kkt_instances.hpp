@@ -42,7 +42,8 @@ class KktGenerator {
   int integer(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random_); }
   Vector normal_vector(int size) { return Vector::NullaryExpr(size, [this] { return normal(); }); }
 
-  /// H positive definite (strictly diagonally dominant), J of full row rank, sigma = 0, D = 0; J's row i holds a large entry in a column of its own.
+  /// H strictly diagonally dominant, J of full row rank with a large entry of each row in a column of its own, sigma = 0,
+  /// D = 0.
   KktInstance convex(int n, int m, Structure structure) {
     KktInstance instance;
     instance.name = "convex";

@@ -1,7 +1,7 @@
 // One tick of an allocation as a problem on its own: what a comparison puts before every solver.
 //
 // The same problem stands in two forms, of fixed size (arm-block linear algebra, no virtual call) and lifted to an Nlp, which every back end
-// takes. N is known at compile time inside; CMake makes one source for each N from allocation_row_of_size.cpp.in.
+// takes. N is known at compile time inside; CMake makes one source for each N from allocation_row.cpp.in.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,5 @@
-// Allocators of N rotors, N known at compile time. CMake makes one source for each N from allocators_of_size.cpp.in.
+// Allocators of N rotors, N known at compile time. CMake makes the sources for each N from newton_allocator.cpp.in
+// and back_end_allocator.cpp.in.
 #pragma once
 
 #include <memory>

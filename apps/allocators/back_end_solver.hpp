@@ -16,7 +16,8 @@ class BackEndSolver {
  public:
   /// `problem` must outlive this. Throws as make_solver() does.
   BackEndSolver(const P& problem, const std::string& name, const Options& options)
-      : name_(name),
+      : problem_(&problem),
+        name_(name),
         options_(options),
         lifted_(std::make_unique<AsNlp<P>>(problem)),
         solver_(make_solver(name, *lifted_, options)),
@@ -35,13 +36,21 @@ class BackEndSolver {
     point.x = point_.x;
     point.lambda = point_.lambda;
     point.z = point_.z;
+    WorkspaceOf<P> workspace = problem_->make_workspace();
+    problem_->prepare(point.x, workspace);
+    problem_->constraints(point.x, workspace, constraints_);
     return result;
   }
 
+  /// c(x) at the point that the last solve returned.
+  const VectorMOf<P>& constraints() const { return constraints_; }
+
  private:
+  const P* problem_;
   std::string name_;
   Options options_;
   bool compliant_ = false;
+  VectorMOf<P> constraints_;
   std::unique_ptr<AsNlp<P>> lifted_;  // at an address that stays when this moves
   std::unique_ptr<Solver> solver_;
   Point point_;

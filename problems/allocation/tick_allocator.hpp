@@ -18,11 +18,13 @@
 #include "tenon/core/result.hpp"
 #include "tenon/problems/allocation/allocator.hpp"
 #include "tenon/problems/allocation/linear_allocation.hpp"
+#include "tenon/problems/allocation/tick_predictor.hpp"
 #include "tenon/problems/allocation/wrench_allocation.hpp"
 
 namespace tenon {
 
-/// SolverType: built from (const WrenchAllocation<N>&, const Options&), with `Result solve(PointOf<WrenchAllocation<N>>&)`.
+/// SolverType: built from (const WrenchAllocation<N>&, const Options&), with `Result solve(PointOf<WrenchAllocation<N>>&)` and
+/// `constraints()`, the rows at the point it returned.
 template <int N, class SolverType>
 class TickAllocator final : public Allocator {
  public:
@@ -52,13 +54,15 @@ class TickAllocator final : public Allocator {
 
   void reset() override {
     previous_.setZero();
-    has_previous_ = false;
+    has_previous_ = has_point_ = false;
+    predictor_.reset();
   }
 
   void reset(ConstVectorRef angles) override {
     previous_ = angles;
     has_previous_ = true;
     has_point_ = false;
+    predictor_.reset();
   }
 
   void fail_rotor(int i) override {
@@ -74,7 +78,6 @@ class TickAllocator final : public Allocator {
   const Allocation& allocate(const Wrench& wrench, double dt) override {
     const auto begin = std::chrono::steady_clock::now();
     out_.iterations = 0;
-    linear_.solve(wrench, previous_, u_linear_, a_linear_);
     problem_.set_wrench(wrench);
     if (has_previous_) problem_.set_previous(previous_.array(), dt);
     else problem_.forget_previous();
@@ -91,13 +94,16 @@ class TickAllocator final : public Allocator {
  private:
   static Options with_warm_start(Options options, bool warm) {
     options.warm_start = warm;
+    options.min_iterations = 1;  // a command is never a mere prediction
     options.max_iterations = std::min(options.max_iterations, warm ? kMaxWarmIterations : kMaxIterations);
     return options;
   }
 
   bool solve_with_bounds(const Wrench& wrench, double dt) {
+    linear_.solve(wrench, previous_, u_linear_, a_linear_);
     problem_.set_wrench_stiffness(kStiffness);
     start_at_branch(wrench, dt);
+    predict();
     if (attempt(solver_)) return settle(wrench);
 
     // A wrench out of reach: the same stiffness relative to the effort, but scaled so that the wrench error is what is minimised, and from
@@ -141,13 +147,19 @@ class TickAllocator final : public Allocator {
   }
 
   bool judge(const Wrench& wrench) {
+    guess_ << point_.x, point_.lambda;
+    predictor_.learn(guess_);
     out_.status = met(wrench) ? AllocationStatus::solved : AllocationStatus::best_effort;
     return true;
   }
 
   bool solve_with_penalties(const Wrench& wrench) {
     problem_.set_wrench_stiffness(0);
-    if (has_previous_ && has_point_ && attempt(solver_)) return judge(wrench);
+    if (has_previous_ && has_point_) {
+      predict();
+      if (attempt(solver_)) return judge(wrench);
+    }
+    linear_.solve(wrench, previous_, u_linear_, a_linear_);
     start_at_linear(wrench);
     if (attempt(solver_)) return judge(wrench);
     // a vehicle that cannot make every wrench, or a singular pose: rows that may give way
@@ -155,6 +167,14 @@ class TickAllocator final : public Allocator {
     problem_.set_preload(Wrench::Zero());
     start_at_linear(wrench);
     return attempt(rescue_) && judge(wrench);
+  }
+
+  /// From the guess in point_ to a better start, where the last ticks give one.
+  void predict() {
+    guess_ << point_.x, point_.lambda;
+    const Guess& start = predictor_.predict(guess_);
+    point_.x = start.template head<2 * N>();
+    point_.lambda = start.template tail<6>();
   }
 
   void start_at_linear(const Wrench& wrench) {
@@ -168,13 +188,15 @@ class TickAllocator final : public Allocator {
     const Result result = solver.solve(point_);
     out_.iterations += result.iterations;
     has_point_ = succeeded(result.status);
-    if (!has_point_) return false;
+    if (!has_point_) {
+      predictor_.reset();
+      return false;
+    }
     out_.objective = result.objective / problem_.effort_scale();
     out_.residual = result.residual.max();
     out_.throttle = point_.x.template head<N>();
     out_.angle = point_.x.template tail<N>();
-    problem_.prepare(point_.x, workspace_);
-    problem_.constraints(point_.x, workspace_, out_.error);
+    out_.error = solver.constraints();
     return true;
   }
 
@@ -186,6 +208,7 @@ class TickAllocator final : public Allocator {
   /// The linear solution, clipped to the limits.
   void fall_back(const Wrench& wrench, double dt) {
     out_.status = AllocationStatus::fallback;
+    predictor_.reset();
     out_.throttle = u_linear_.array().max(throttle_lower_).min(throttle_upper_).matrix();
     out_.angle = a_linear_;
     if (has_previous_ && hard_limits_) {
@@ -212,7 +235,9 @@ class TickAllocator final : public Allocator {
   LinearAllocation linear_;
   Problem problem_;
   SolverType solver_, rescue_;
-  typename Problem::Workspace workspace_;
+  using Guess = Eigen::Matrix<double, 2 * N + 6, 1>;  // x and lambda
+  TickPredictor<Guess> predictor_;
+  Guess guess_;
   PointOf<Problem> point_;
   Vector u_linear_, a_linear_;  // N
   Vector previous_;             // N, rad

@@ -40,6 +40,8 @@ class WrenchAllocation {
     Lanes cos, sin;                            // of the arm angles
     Lanes thrust, thrust_u, thrust_uu;         // mu and its derivatives
     Lanes torque, torque_u, torque_uu;         // tau and its derivatives
+    Columns direction, direction_a;            // wrench per newton of thrust, and its derivative by the arm angle
+    Columns drag, drag_a;                      // wrench per newton metre of drag torque, the same
   };
 
   /// Throws std::invalid_argument where the vehicle has not N rotors or a polynomial of more than kMaxDegree.
@@ -97,8 +99,15 @@ class WrenchAllocation {
   void prepare(const VectorN& x, Workspace& at) const {
     const Lanes u = x.template head<N>().array();
     sine_and_cosine<S, N>(x.template tail<N>().array(), at.sin, at.cos);
-    evaluate(thrust_, u, at.thrust, at.thrust_u, at.thrust_uu);
-    evaluate(torque_, u, at.torque, at.torque_u, at.torque_uu);
+    evaluate(thrust_, degree_, u, at.thrust, at.thrust_u, at.thrust_uu);
+    evaluate(torque_, degree_, u, at.torque, at.torque_u, at.torque_uu);
+    // n = p_0 + cos p_1 + sin p_2,  n_a = -sin p_1 + cos p_2
+    for (int i = 0; i < N; ++i) {
+      at.direction.col(i) = thrust_at_[0].col(i) + at.cos[i] * thrust_at_[1].col(i) + at.sin[i] * thrust_at_[2].col(i);
+      at.direction_a.col(i) = at.cos[i] * thrust_at_[2].col(i) - at.sin[i] * thrust_at_[1].col(i);
+      at.drag.col(i) = torque_at_[0].col(i) + at.cos[i] * torque_at_[1].col(i) + at.sin[i] * torque_at_[2].col(i);
+      at.drag_a.col(i) = at.cos[i] * torque_at_[2].col(i) - at.sin[i] * torque_at_[1].col(i);
+    }
   }
 
   S objective(const VectorN& x, Workspace&) const {
@@ -123,16 +132,15 @@ class WrenchAllocation {
   }
 
   void constraints(const VectorN&, Workspace& at, Wrench6& g) const {
-    g = -wrench_;
-    for (int i = 0; i < N; ++i) {
-      g += at.thrust[i] * direction(i, at) + at.torque[i] * drag(i, at);
-    }
+    g.noalias() = at.direction * at.thrust.matrix();
+    g.noalias() += at.drag * at.torque.matrix();
+    g -= wrench_;
   }
 
   void jacobian(const VectorN&, Workspace& at, Eigen::Matrix<S, 6, kVariables>& j) const {
     for (int i = 0; i < N; ++i) {
-      j.col(i) = at.thrust_u[i] * direction(i, at) + at.torque_u[i] * drag(i, at);
-      j.col(N + i) = at.thrust[i] * direction_a(i, at) + at.torque[i] * drag_a(i, at);
+      j.col(i) = at.thrust_u[i] * at.direction.col(i) + at.torque_u[i] * at.drag.col(i);
+      j.col(N + i) = at.thrust[i] * at.direction_a.col(i) + at.torque[i] * at.drag_a.col(i);
     }
   }
 
@@ -140,10 +148,9 @@ class WrenchAllocation {
   void hessian(const VectorN& x, S sigma, const Wrench6& lambda, Workspace& at, Hessian& h) const {
     const auto u = x.template head<N>().array();
     const Lanes omega = rates(x);
-    const Lanes f0 = (thrust_at_[0].transpose() * lambda).array(), f1 = (thrust_at_[1].transpose() * lambda).array(),
-                f2 = (thrust_at_[2].transpose() * lambda).array();
-    const Lanes t0 = (torque_at_[0].transpose() * lambda).array(), t1 = (torque_at_[1].transpose() * lambda).array(),
-                t2 = (torque_at_[2].transpose() * lambda).array();
+    const Eigen::Matrix<S, 6 * N, 1> along = transposed_ * lambda;
+    const auto lanes = [&](int k) { return along.template segment<N>(k * N).array(); };
+    const Lanes f0 = lanes(0), f1 = lanes(1), f2 = lanes(2), t0 = lanes(3), t1 = lanes(4), t2 = lanes(5);
     const Lanes f_aa = -(at.cos * f1 + at.sin * f2), f_a = at.cos * f2 - at.sin * f1, f = f0 - f_aa;
     const Lanes t_aa = -(at.cos * t1 + at.sin * t2), t_a = at.cos * t2 - at.sin * t1, t = t0 - t_aa;
 
@@ -164,11 +171,11 @@ class WrenchAllocation {
  private:
   using Polynomial = std::array<Lanes, kMaxDegree + 1>;  // ascending coefficients
 
-  static void evaluate(const Polynomial& p, const Lanes& u, Lanes& value, Lanes& first, Lanes& second) {
-    value = p[kMaxDegree];
+  static void evaluate(const Polynomial& p, int degree, const Lanes& u, Lanes& value, Lanes& first, Lanes& second) {
+    value = p[std::size_t(degree)];
     first.setZero();
     second.setZero();
-    for (int k = kMaxDegree - 1; k >= 0; --k) {  // Horner, with derivatives
+    for (int k = degree - 1; k >= 0; --k) {  // Horner, with derivatives
       second = second * u + 2 * first;
       first = first * u + value;
       value = value * u + p[std::size_t(k)];
@@ -177,21 +184,13 @@ class WrenchAllocation {
 
   Lanes rates(const VectorN& x) const { return (x.template tail<N>().array() - previous_) * inverse_dt_; }
 
-  // n = p_0 + cos p_1 + sin p_2,  n_a = -sin p_1 + cos p_2; as wrench per newton of thrust, and per newton metre of drag torque
-  auto direction(int i, const Workspace& at) const {
-    return thrust_at_[0].col(i) + at.cos[i] * thrust_at_[1].col(i) + at.sin[i] * thrust_at_[2].col(i);
-  }
-  auto direction_a(int i, const Workspace& at) const { return at.cos[i] * thrust_at_[2].col(i) - at.sin[i] * thrust_at_[1].col(i); }
-  auto drag(int i, const Workspace& at) const {
-    return torque_at_[0].col(i) + at.cos[i] * torque_at_[1].col(i) + at.sin[i] * torque_at_[2].col(i);
-  }
-  auto drag_a(int i, const Workspace& at) const { return at.cos[i] * torque_at_[2].col(i) - at.sin[i] * torque_at_[1].col(i); }
-
   // the vehicle
   std::string name_;
   std::array<Columns, 3> thrust_at_;  // [p_k; r x p_k]
   std::array<Columns, 3> torque_at_;  // [0; s p_k]
+  Eigen::Matrix<S, 6 * N, 6> transposed_;  // all six, transposed, one above the other
   Polynomial thrust_, torque_;
+  int degree_ = 0;  // the largest of all
   Lanes throttle_lower_, throttle_upper_, angle_lower_, angle_upper_, rate_limit_;
   Eigen::Array<bool, N, 1> tilts_;
   struct Weights {
@@ -238,6 +237,7 @@ WrenchAllocation<N, S>::WrenchAllocation(const Vehicle& vehicle) : name_(vehicle
                                     std::to_string(polynomial.size()) + ")");
       }
       for (std::size_t k = 0; k < coefficients.size(); ++k) polynomial[k][i] = S(coefficients[k]);
+      degree_ = std::max(degree_, int(coefficients.size()) - 1);
     };
     load(rotor.thrust, thrust_);
     load(rotor.torque, torque_);
@@ -245,6 +245,10 @@ WrenchAllocation<N, S>::WrenchAllocation(const Vehicle& vehicle) : name_(vehicle
     angle_lower_[i] = S(rotor.angle_lower), angle_upper_[i] = S(rotor.angle_upper);
     rate_limit_[i] = S(rotor.angle_rate_limit);
     tilts_[i] = rotor.tilt;
+  }
+  for (int k = 0; k < 3; ++k) {
+    transposed_.template middleRows<N>(k * N) = thrust_at_[std::size_t(k)].transpose();
+    transposed_.template middleRows<N>((3 + k) * N) = torque_at_[std::size_t(k)].transpose();
   }
   const AllocationWeights& weights = vehicle.weights;
   weights_ = hard_limits_ ? Weights{S(weights.throttle), 0, 0, 0, S(weights.branch)}

@@ -27,19 +27,21 @@ class BarrierBox {
   using Array = Eigen::Array<Scalar, Dim, 1>;
   using Multipliers = BoxMultipliers<Scalar, Dim>;
 
-  explicit BarrierBox(int size) : lower_(size), upper_(size), fixed_(size), free_(size) {}
+  explicit BarrierBox(int size) : lower_(size), upper_(size), lowest_(size), highest_(size), fixed_(size), free_(size) {}
 
   /// Takes the bounds and moves v to fixed values.
   void set(const auto& lower, const auto& upper, auto&& v) {
     sides_ = 0;
     any_fixed_ = false;
     for (Eigen::Index i = 0; i < v.size(); ++i) {
-      const bool fixed = lower[i] == upper[i];
+      const bool fixed = upper[i] - lower[i] <= 4 * margin(lower[i]);  // no room for an interior
       fixed_[i] = fixed ? Scalar(kFixedStiffness) : Scalar(0);
       free_[i] = fixed ? Scalar(0) : Scalar(1);
       lower_[i] = fixed ? -kInfinity<Scalar> : lower[i];
       upper_[i] = fixed ? kInfinity<Scalar> : upper[i];
       if (fixed) v[i] = lower[i];
+      lowest_[i] = std::isfinite(lower_[i]) ? lower_[i] + margin(lower_[i]) : lower_[i];
+      highest_[i] = std::isfinite(upper_[i]) ? upper_[i] - margin(upper_[i]) : upper_[i];
       any_fixed_ |= fixed;
       sides_ += int(std::isfinite(lower_[i])) + int(std::isfinite(upper_[i]));
     }
@@ -51,6 +53,11 @@ class BarrierBox {
   bool is_fixed(Eigen::Index i) const { return fixed_[i] > 0; }
   const Array& fixed_stiffness() const { return fixed_; }
   const Array& free_mask() const { return free_; }  // 0 where fixed, else 1
+
+  /// Undoes what rounding may do to a step up to the boundary: every distance stays positive.
+  void keep_inside(auto&& v) const {
+    if (sides_ > 0) v = v.max(lowest_).min(highest_);
+  }
 
   /// Moves v into the interior, at least `absolute` max(1, |bound|) away from a bound, or `relative` of the width.  [WB06, sec. 3.6]
   void push_inside(auto&& v, Scalar absolute, Scalar relative) const {
@@ -185,7 +192,10 @@ class BarrierBox {
   static constexpr double kSmallest = sizeof(Scalar) == 8 ? 1e-250 : 1e-30;
   static constexpr double kLargest = sizeof(Scalar) == 8 ? 1e250 : 1e30;
 
+  static Scalar margin(Scalar bound) { return 4 * std::numeric_limits<Scalar>::epsilon() * std::max(Scalar(1), std::abs(bound)); }
+
   Array lower_, upper_;
+  Array lowest_, highest_;  // the same, a few units of rounding inside
   Array fixed_;  // 0, or kFixedStiffness
   Array free_;   // 1, or 0
   int sides_ = 0;

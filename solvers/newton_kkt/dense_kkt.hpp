@@ -3,7 +3,7 @@
 //     K = [ H + diag(sigma)    J'      ]  n        S K S = P' L D L' P
 //         [ J                 -diag(D) ]  m
 //
-// S is diagonal, powers of two: it equilibrates K without a rounding. Solves are refined against K. Equations: linear_algebra.md (1.1)-(1.4).
+// S is diagonal, powers of two: it equilibrates K without a rounding. Solves are refined against K. Equations: linear_algebra.md.
 #pragma once
 
 #include <cassert>
@@ -42,9 +42,10 @@ class DenseKkt {
     return ldlt_.factor(k_);
   }
 
-  /// K [dx; dlambda] = [r_x; r_c]. Where `factor` reported zero > 0 the answer is finite but means little.
+  /// K [dx; dlambda] = [r_x; r_c]. Returns the residual relative to the right-hand side, both equilibrated, (1.5): rounding times condition
+  /// number. Towards 1 it says that K is singular although no pivot showed it. After zero > 0 the answer is finite but means little.
   template <class XType, class CType, class DxType, class DlambdaType>
-  void solve(const Eigen::MatrixBase<XType>& r_x, const Eigen::MatrixBase<CType>& r_c, DxType&& dx, DlambdaType&& dlambda);
+  Scalar solve(const Eigen::MatrixBase<XType>& r_x, const Eigen::MatrixBase<CType>& r_c, DxType&& dx, DlambdaType&& dlambda);
 
  private:
   using Ldlt = DenseLdlt<Scalar, kSize>;
@@ -118,7 +119,7 @@ BackwardError<Scalar> DenseKkt<Scalar, N, M>::backward_error() {
 
 template <class Scalar, int N, int M>
 template <class XType, class CType, class DxType, class DlambdaType>
-void DenseKkt<Scalar, N, M>::solve(const Eigen::MatrixBase<XType>& r_x, const Eigen::MatrixBase<CType>& r_c, DxType&& dx,
+Scalar DenseKkt<Scalar, N, M>::solve(const Eigen::MatrixBase<XType>& r_x, const Eigen::MatrixBase<CType>& r_c, DxType&& dx,
                                    DlambdaType&& dlambda) {
   assert(r_x.size() == n_ && r_c.size() == m_ && dx.size() == n_ && dlambda.size() == m_);
   for (int i = 0; i < n_; ++i) rhs_[i] = scale_[i] * r_x.coeff(i);
@@ -126,10 +127,11 @@ void DenseKkt<Scalar, N, M>::solve(const Eigen::MatrixBase<XType>& r_x, const Ei
   solution_ = rhs_;
   ldlt_.solve_in_place(solution_);
 
-  refine(solution_, residual_, previous_, kRefinements, [this](PaddedVector& x) { ldlt_.solve_in_place(x); },
-         [this] { return backward_error(); });
+  const BackwardError<Scalar> error = refine(solution_, residual_, previous_, kRefinements,
+                              [this](PaddedVector& x) { ldlt_.solve_in_place(x); }, [this] { return backward_error(); });
   for (int i = 0; i < n_; ++i) dx.coeffRef(i) = scale_[i] * solution_[i];
   for (int i = 0; i < m_; ++i) dlambda.coeffRef(i) = scale_[n_ + i] * solution_[n_ + i];
+  return error.largest / std::max(rhs_.template lpNorm<Eigen::Infinity>(), std::numeric_limits<Scalar>::min());  // (1.5)
 }
 
 }  // namespace tenon

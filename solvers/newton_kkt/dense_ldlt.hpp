@@ -120,8 +120,8 @@ Scalar DenseLdlt<Scalar, Size>::largest_beside(int k, int r, int& index) {
   return largest;
 }
 
-// (2.4) Walks to ever larger entries, from column to row, until a diagonal entry or an off-diagonal one rules its row and its column. Brings
-// the pivot to the front and returns its order.
+// (2.4) Walks to ever larger entries, from column to row, until a diagonal entry or an off-diagonal one rules its row and its column.
+// Brings the pivot to the front and returns its order.
 template <class Scalar, int Size>
 int DenseLdlt<Scalar, Size>::select_pivot(int k) {
   int p = k;

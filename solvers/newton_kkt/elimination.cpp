@@ -60,8 +60,8 @@ std::vector<int> postorder(const std::vector<int>& parent) {
   return order;
 }
 
-// Columns that leave in one front. Columns with the same rows are one at once; a child joins its parent where the zeros that this stores are
-// few, or the front is narrow anyway: wider fronts vectorise, and leave more choice of pivots.
+// Columns that leave in one front. Columns with the same rows are one at once; a child joins its parent where the zeros that this
+// stores are few, or the front is narrow anyway: wider fronts vectorise, and leave more choice of pivots.
 struct Supernodes {
   std::vector<int> parent;                // -1 at a root
   std::vector<std::vector<int>> columns;  // ascending

@@ -31,32 +31,39 @@ class FilterLineSearch {
 
   /// Looks for an acceptable `trial` = now + alpha step, alpha <= alpha_max; `step` becomes the one taken. False where there is none.
   bool search(BarrierProblem<P>& barrier, NewtonSystem<P, Kkt>& system, const Iterate<P>& now, Step<P>& step, Scalar alpha_max,
-              Scalar alpha_dual, Scalar tau, Scalar mu, Scalar error, Iterate<P>& trial) {
+              Scalar alpha_dual, Scalar tau, Scalar mu, Iterate<P>& trial) {
     theta_ = barrier.violation(now);
     phi_ = barrier.barrier_objective(now, mu);
     slope_ = barrier.barrier_slope(now, step, mu);
     trials_ = 0;
 
-    const Scalar alpha_min = smallest_step();
-    for (alpha_ = alpha_max; alpha_ >= alpha_min; alpha_ /= 2) {
-      if (try_point(barrier, now, step, mu, trial)) return true;
+    alpha_ = alpha_max;
+    if (try_point(barrier, now, step, mu, trial)) return true;
+    for (const Scalar alpha_min = smallest_step(); alpha_ >= alpha_min; alpha_ /= 2) {
+      if (trials_ > 1 && try_point(barrier, now, step, mu, trial)) return true;
       if (trials_ > 1 || !trial_finite_) continue;
-      if (error_falls(barrier, now, step, alpha_dual, mu, error, trial)) return true;
+      if (error_falls(barrier, now, step, alpha_dual, mu, trial)) return true;
       if (trial_theta_ >= theta_ && correct(barrier, system, now, step, tau, mu, trial)) return true;
     }
     return barrier.all_rows_compliant() && give_way(barrier, now, step, alpha_max, mu, trial);
   }
 
  private:
-  static constexpr Scalar kGammaTheta = Scalar(1e-5), kGammaPhi = Scalar(1e-8), kDelta = 1, kSTheta = Scalar(1.1), kSPhi = Scalar(2.3),
+  static constexpr Scalar kGammaTheta = Scalar(1e-5), kGammaPhi = Scalar(1e-8), kDelta = 1, 
                           kEtaPhi = Scalar(1e-8), kGammaAlpha = Scalar(0.05), kKappaSoc = Scalar(0.99), kErrorFall = Scalar(0.9), kNearSolution = Scalar(1e-2);
   static constexpr int kMaxCorrections = 4;
+
+  void move(const BarrierProblem<P>& barrier, const Iterate<P>& now, const Step<P>& step, Iterate<P>& trial) const {
+    trial.x = now.x + alpha_ * step.x;
+    trial.s = now.s + alpha_ * step.s;
+    barrier.x_box().keep_inside(trial.x.array());
+    barrier.s_box().keep_inside(trial.s.array());
+  }
 
   /// now + alpha step, evaluated and judged.
   bool try_point(BarrierProblem<P>& barrier, const Iterate<P>& now, const Step<P>& step, Scalar mu, Iterate<P>& trial) {
     ++trials_;
-    trial.x = now.x + alpha_ * step.x;
-    trial.s = now.s + alpha_ * step.s;
+    move(barrier, now, step, trial);
     trial.lambda = now.lambda + alpha_ * step.lambda;
     trial_finite_ = barrier.evaluate(trial);
     if (!trial_finite_) return false;
@@ -66,8 +73,9 @@ class FilterLineSearch {
 
   /// Newton's own measure: a full step that brings the primal-dual error down is a good one, even where the barrier objective, which rounding
   /// spoils near the solution, does not see it.
-  bool error_falls(BarrierProblem<P>& barrier, const Iterate<P>& now, const Step<P>& step, Scalar alpha_dual, Scalar mu, Scalar error,
+  bool error_falls(BarrierProblem<P>& barrier, const Iterate<P>& now, const Step<P>& step, Scalar alpha_dual, Scalar mu,
                    Iterate<P>& trial) {
+    const Scalar error = barrier.error(now, mu).max_scaled();
     if (!(error < kNearSolution)) return false;
     take_dual_step(now, step, alpha_dual, trial);
     return barrier.linearise(trial) && barrier.error(trial, mu).max_scaled() <= kErrorFall * error;
@@ -87,15 +95,19 @@ class FilterLineSearch {
 
   /// The step promises more descent than its violation is worth.
   bool switching() const {
-    return slope_ < 0 && alpha_ * std::pow(-slope_, kSPhi) > kDelta * std::pow(theta_, kSTheta);
+    return slope_ < 0 && alpha_ * slope_power() > kDelta * theta_power();
   }
+
+  // theta^s_theta and (-slope)^s_phi with s_theta = 9/8 and s_phi = 5/2 > 2 s_theta: square roots cost less than powers
+  Scalar theta_power() const { return theta_ * std::sqrt(std::sqrt(std::sqrt(theta_))); }
+  Scalar slope_power() const { return slope_ * slope_ * std::sqrt(-slope_); }
 
   /// [WB06, eq. 23]
   Scalar smallest_step() const {
     Scalar smallest = kGammaTheta;
     if (slope_ < 0) {
       smallest = std::min(smallest, kGammaPhi * theta_ / -slope_);
-      if (theta_ <= theta_min_) smallest = std::min(smallest, kDelta * std::pow(theta_, kSTheta) / std::pow(-slope_, kSPhi));
+      if (theta_ <= theta_min_) smallest = std::min(smallest, kDelta * theta_power() / slope_power());
     }
     return std::max(kGammaAlpha * smallest, Scalar(1e-14));
   }
@@ -133,8 +145,7 @@ class FilterLineSearch {
     const Scalar rounding = 10 * std::numeric_limits<Scalar>::epsilon() * std::abs(phi);
     for (alpha_ = alpha_max; alpha_ >= alpha_max * Scalar(1e-10); alpha_ /= 2) {
       ++trials_;
-      trial.x = now.x + alpha_ * step.x;
-      trial.s = now.s + alpha_ * step.s;
+      move(barrier, now, step, trial);
       if (!barrier.evaluate(trial)) continue;
       barrier.let_rows_give_way(trial);
       if (barrier.barrier_objective(trial, mu) <= phi + Scalar(1e-4) * alpha_ * slope + rounding) {

@@ -6,13 +6,14 @@
 #include <utility>
 
 #include "tenon/solvers/newton_kkt/lanes.hpp"
+#include "tenon/solvers/newton_kkt/subtract_product.hpp"
 
 namespace tenon {
 namespace {
 
-constexpr double kThreshold = 0.1;          // u of (4.2)
+constexpr double kThreshold = 0.01;          // u of (4.2)
 constexpr double kForcedThreshold = 1e-10;   // where columns may not be left over
-constexpr double kPerturbation = 1.5e-8;     // sqrt(eps), beside the largest entry of the column
+constexpr double kPerturbation = 1.5e-8;     // sqrt(eps) of (4.5)
 constexpr double kAlpha = 0.6403882032022076;  // (2.3)
 constexpr double kZero = 64 * std::numeric_limits<double>::epsilon();  // (2.5)
 constexpr double kTiny = 1e-150;       // of an equilibrated matrix, and still safe to square
@@ -84,8 +85,8 @@ void Elimination::run(bool force) {
   }
 }
 
-// (4.2) The smaller growth of  g1 = max_i |a_ik| / |a_kk|  and  g2 = max over both columns of |D^-1| [max_i |a_ik|; max_i |a_ir|],  r the largest
-// partner; none where both exceed 1/u. Brings a partner to k+1.
+// (4.2) The smaller growth of  g1 = max_i |a_ik| / |a_kk|  and  g2 = max |D^-1| [max_i |a_ik|; max_i |a_ir|],  r the largest partner;
+// none where both exceed 1/u. Brings a partner to k+1.
 Pivot Elimination::find_pivot(int k) {
   double* a = front_.column(k);
   const double diagonal = std::abs(a[k]);
@@ -124,7 +125,7 @@ double Elimination::largest_beside(int k, int r) {
   return largest;
 }
 
-// Exchanges rows and columns p < q of the block: of what is left, and the rows of L. Those of W have done their work within the block.
+// Exchanges rows and columns p < q of the block: of what is left, and the rows of L. Those of W have done their work there.
 void Elimination::exchange(int p, int q) {
   if (p == q) return;
   for (int j = 0; j < p; ++j) std::swap(front_.column(j)[p], front_.column(j)[q]);
@@ -156,7 +157,7 @@ void Elimination::eliminate_one(int k) {
   ++(l[k] > 0 ? inertia_.positive : inertia_.negative);
   const double inverse = 1 / l[k];
   const double below = lanes::max_abs(l, k + 1, front_.rows);
-  const lanes::Lane<double> change = lanes::Lane<double>::Constant(std::max(below, front_.magnitude[k]));
+  const lanes::Lane<double> change = lanes::Lane<double>::Constant(below);
   for (int i = lanes::lane_of<double>(k + 1); i < front_.rows; i += lanes::kLanes<double>) {
     lanes::Map<double> column(l + i), magnitude(front_.magnitude + i);
     lanes::Map<double>(w + i) = column;
@@ -191,8 +192,8 @@ void Elimination::eliminate_two(int k) {
 
   const double below1 = lanes::max_abs(l1, k + 2, front_.rows);
   const double below2 = lanes::max_abs(l2, k + 2, front_.rows);
-  const lanes::Lane<double> change1 = lanes::Lane<double>::Constant(std::max(below1, front_.magnitude[k]));
-  const lanes::Lane<double> change2 = lanes::Lane<double>::Constant(std::max(below2, front_.magnitude[k + 1]));
+  const lanes::Lane<double> change1 = lanes::Lane<double>::Constant(below1);
+  const lanes::Lane<double> change2 = lanes::Lane<double>::Constant(below2);
   for (int i = lanes::lane_of<double>(k + 2); i < front_.rows; i += lanes::kLanes<double>) {
     lanes::Map<double> column1(l1 + i), column2(l2 + i), magnitude(front_.magnitude + i);
     const lanes::Lane<double> a1 = column1, a2 = column2;
@@ -224,57 +225,10 @@ void Elimination::update_behind_block() {
                    front_.rows - block_end_);
 }
 
-using Lane = lanes::Lane<double>;
-using LooseMap = Eigen::Map<Lane>;
-using LooseConstMap = Eigen::Map<const Lane>;
-
-// One tile of c, in registers: Lanes * 4 rows, Columns columns.
-template <int Lanes, int Columns>
-inline void subtract_tile(const double* l, const double* w, std::ptrdiff_t stride, int depth, double* c, std::ptrdiff_t c_stride) {
-  Lane sum[Columns][Lanes];
-  for (auto& column : sum) {
-    for (Lane& lane : column) lane.setZero();
-  }
-  for (int k = 0; k < depth; ++k, l += stride, w += stride) {
-    Lane left[Lanes];
-    for (int q = 0; q < Lanes; ++q) left[q] = LooseConstMap(l + 4 * q);
-    for (int j = 0; j < Columns; ++j) {
-      for (int q = 0; q < Lanes; ++q) sum[j][q] += left[q] * w[j];
-    }
-  }
-  for (int j = 0; j < Columns; ++j) {
-    for (int q = 0; q < Lanes; ++q) LooseMap(c + j * c_stride + 4 * q) -= sum[j][q];
-  }
-}
-
-template <int Columns>
-void subtract_columns(const double* l, const double* w, std::ptrdiff_t stride, int depth, double* c, std::ptrdiff_t c_stride, int rows) {
-  int i = 0;
-  for (; i + 8 <= rows; i += 8) subtract_tile<2, Columns>(l + i, w, stride, depth, c + i, c_stride);
-  for (; i + 4 <= rows; i += 4) subtract_tile<1, Columns>(l + i, w, stride, depth, c + i, c_stride);
-  for (; i < rows; ++i) {
-    for (int j = 0; j < Columns; ++j) {
-      double sum = 0;
-      for (int k = 0; k < depth; ++k) sum += l[k * stride + i] * w[k * stride + j];
-      c[j * c_stride + i] -= sum;
-    }
-  }
-}
-
 }  // namespace
 
 void eliminate_stable(Front& front, Inertia& inertia) { Elimination(front, inertia, kThreshold).run(false); }
 
 void eliminate_rest(Front& front, Inertia& inertia) { Elimination(front, inertia, kForcedThreshold).run(true); }
-
-void subtract_product(const double* l, const double* w, int stride, int depth, double* c, int c_stride, int columns, int rows) {
-  int j = 0;
-  for (; j + 4 <= columns; j += 4) {
-    subtract_columns<4>(l + j, w + j, stride, depth, c + static_cast<std::ptrdiff_t>(j) * c_stride + j, c_stride, rows - j);
-  }
-  for (; j < columns; ++j) {
-    subtract_columns<1>(l + j, w + j, stride, depth, c + static_cast<std::ptrdiff_t>(j) * c_stride + j, c_stride, rows - j);
-  }
-}
 
 }  // namespace tenon

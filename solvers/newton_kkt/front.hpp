@@ -1,4 +1,4 @@
-// Partial L D L' of one front: a dense symmetric matrix of which only the first `columns` columns may be pivots, because only they are summed up.
+// Partial L D L' of one front: a dense symmetric matrix whose first columns alone may be pivots, because only they are summed up.
 //
 //                columns         rest
 //           +---------------+-----------+
@@ -6,8 +6,8 @@
 //           |  A21          |  (A22)    |        A22 lives elsewhere and later receives  A22 - L21 W21',  W = L D.
 //           +---------------+-----------+
 //
-// A column without a stable pivot is left over ("delayed"): the parent front holds more rows summed up, and so more choice.
-// Threshold pivoting with 1x1 and 2x2 pivots: Duff, Reid, ACM TOMS 9 (1983) 302; Duff, ACM TOMS 30 (2004) 118. Equations: linear_algebra.md (4.1)-(4.5).
+// A column without a stable pivot is left over ("delayed"): the parent front has more columns summed up, and so more choice.
+// Sources: Duff, Reid, ACM TOMS 9 (1983) 302; Duff, ACM TOMS 30 (2004) 118. Equations: linear_algebra.md (4.1)-(4.5).
 #pragma once
 
 #include "tenon/solvers/newton_kkt/inertia.hpp"
@@ -35,8 +35,5 @@ void eliminate_stable(Front& front, Inertia& inertia);
 
 /// Eliminates the remaining columns whatever they are; a pivot that is next to nothing is perturbed and counted as a zero.
 void eliminate_rest(Front& front, Inertia& inertia);
-
-/// c(i, j) -= sum_k l(i, k) w(j, k) for j < columns, j <= i < rows, k < depth. l and w share a stride. Entries of c above its diagonal may change.
-void subtract_product(const double* l, const double* w, int stride, int depth, double* c, int c_stride, int columns, int rows);
 
 }  // namespace tenon

@@ -23,9 +23,9 @@ template <class Scalar, int N, int M>
 struct KktFor<Eigen::Matrix<Scalar, N, N>, M> {
   using type = DenseKkt<Scalar, N, M>;
 };
-template <class Scalar, int N, int M>
-struct KktFor<PairBlockDiagonal<Scalar, N>, M> {
-  using type = ArmBlockKkt<Scalar, N, M>;
+template <class Scalar, int N>
+struct KktFor<PairBlockDiagonal<Scalar, N>, ArmBlockKkt<Scalar, N>::kRows> {
+  using type = ArmBlockKkt<Scalar, N>;
 };
 template <int M>
 struct KktFor<SparseMatrix, M> {

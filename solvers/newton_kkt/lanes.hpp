@@ -1,7 +1,7 @@
 // Columns in whole lanes: the three kernels of the dense factorisation.
 //
-// A column is stored 32-byte aligned and padded with zeros to a multiple of kLanes, so that every loop runs in full vector registers, without
-// a peeled head or tail. A loop that should begin at row i begins at the lane that holds i: the callers keep what lies before it harmless
+// A column is stored 32-byte aligned and padded with zeros to a multiple of kLanes: every loop runs in full vector registers,
+// without a peeled head or tail. A loop that should begin at row i begins at the lane of i: the callers keep what lies before it harmless
 // (zero, or the unused upper triangle).
 #pragma once
 

@@ -18,10 +18,15 @@
 
 #include "tenon/solvers/newton_kkt/elimination.hpp"
 #include "tenon/solvers/newton_kkt/inertia.hpp"
+#include "tenon/solvers/newton_kkt/lanes.hpp"
 
 namespace tenon {
 
 struct Front;
+
+/// Rows in whole lanes, and the numbers that a block of so many rows and columns takes: a panel, a contribution, columns left over.
+inline std::size_t lanes_of(int rows) { return static_cast<std::size_t>(lanes::padded<double>(rows)); }
+inline std::size_t panel_size(int rows, int columns) { return lanes_of(rows) * static_cast<std::size_t>(columns); }
 
 /// Memory that is not touched before it is used, in 32-byte lanes.
 class Arena {
@@ -40,8 +45,16 @@ class Arena {
 
 class MultifrontalLdlt {
  public:
+  /// Memory for delays, in numbers beyond the plan: so many times the plan, within bounds. It costs nothing before it is touched.
+  struct Room {
+    std::size_t times = 5;
+    std::size_t least = 1 << 16;
+    std::size_t most = 1 << 26;
+  };
+
   /// lower: the lower triangle of K with its whole diagonal; its first n rows are variables, the others constraints.
-  MultifrontalLdlt(const SparsePattern& lower, int n);
+  MultifrontalLdlt(const SparsePattern& lower, int n) : MultifrontalLdlt(lower, n, Room{}) {}
+  MultifrontalLdlt(const SparsePattern& lower, int n, Room room);
 
   int size() const { return tree_.size; }
 
@@ -70,7 +83,7 @@ class MultifrontalLdlt {
     int source;               // among the values
   };
 
-  void plan();
+  void plan(Room room);
   void assemble(int s, Record& record, const double* values);
   void add_contribution(int child, int s, int& place);
   std::size_t panel_growth(int s, int delayed) const;

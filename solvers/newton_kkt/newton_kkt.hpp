@@ -26,6 +26,12 @@ struct NoRestoration {
   NoRestoration(const P&, const Options&) {}
 };
 
+/// In the place of a clock, where the caller holds one: elapsed is 0 and no time limit applies.
+struct NoClock {
+  using time_point = std::chrono::steady_clock::time_point;
+  static time_point now() { return {}; }
+};
+
 template <NonlinearProgram P, class Kkt = KktOf<P>, class Rescue = Restoration<P>, class Clock = std::chrono::steady_clock>
 class NewtonKkt {
  public:
@@ -39,9 +45,10 @@ class NewtonKkt {
         system_(problem),
         restoration_(problem, options_),
         line_search_(barrier_.n(), barrier_.m()),
-        now_(barrier_.n(), barrier_.m()),
-        trial_(barrier_.n(), barrier_.m()),
+        iterates_{Iterate<P>(barrier_.n(), barrier_.m()), Iterate<P>(barrier_.n(), barrier_.m())},
         step_(barrier_.n(), barrier_.m()) {}
+  NewtonKkt(const NewtonKkt&) = delete;
+  NewtonKkt& operator=(const NewtonKkt&) = delete;
 
   /// Starts from `point`, ends in it. Allocates nothing, throws nothing.
   Result solve(PointOf<P>& point) {
@@ -56,7 +63,7 @@ class NewtonKkt {
     while (!ended) {
       measure();
       if ((ended = stop())) break;
-      if (enough(std::as_const(now_))) {
+      if (enough(std::as_const(*now_))) {
         ended = Status::stopped;
         break;
       }
@@ -78,69 +85,72 @@ class NewtonKkt {
 
   Options& options() { return options_; }
 
+  /// c(x) at the point that the last solve returned.
+  const VectorMOf<P>& constraints() const { return now_->constraints; }
+
  private:
   std::optional<Status> start(PointOf<P>& point) {
-    now_.x = point.x;
-    now_.lambda = point.lambda;
+    now_->x = point.x;
+    now_->lambda = point.lambda;
     iterations_ = tiny_steps_ = 0;
     trust_guess_ = options_.warm_start;
     alpha_primal_ = alpha_dual_ = 0;
     system_.reset();
-    barrier_.take_bounds(now_);
+    barrier_.take_bounds(*now_);
 
     const Scalar push = options_.warm_start ? kWarmPush : kColdPush;
-    barrier_.x_box().push_inside(now_.x.array(), push, push);
-    if (!barrier_.evaluate(now_)) return Status::invalid_start;
+    barrier_.x_box().push_inside(now_->x.array(), push, push);
+    if (!barrier_.evaluate(*now_)) return Status::invalid_start;
     set_slacks(push);
-    if (!barrier_.linearise(now_)) return Status::invalid_start;
+    if (!barrier_.linearise(*now_)) return Status::invalid_start;
     if (options_.warm_start) warm_multipliers(point);
     else cold_multipliers();
     if (barrier_.sides() == 0) mu_.switch_off();
     barrier_.soften_rows(mu_.at_end() ? 0 : mu_.value());
-    line_search_.start(barrier_.violation(now_));
+    line_search_.start(barrier_.violation(*now_));
     return std::nullopt;
   }
 
   void set_slacks(Scalar push) {
     const auto& box = barrier_.s_box();
-    now_.s = (box.free_mask() > 0).select(now_.constraints, now_.s);
-    box.push_inside(now_.s.array(), push, push);
+    now_->s = (box.free_mask() > 0).select(now_->constraints, now_->s);
+    box.push_inside(now_->s.array(), push, push);
   }
 
   void cold_multipliers() {
     mu_.start(options_.initial_mu > 0 ? Scalar(options_.initial_mu) : BarrierParameter<Scalar>::kInitial, tolerance());
-    barrier_.x_box().fill(now_.zx, 1);
-    barrier_.s_box().fill(now_.zs, 1);
-    if (!system_.least_squares_multipliers(barrier_, now_)) now_.lambda.setZero();
-    barrier_.update_stationarity(now_);
+    barrier_.x_box().fill(now_->zx, 1);
+    barrier_.s_box().fill(now_->zs, 1);
+    if (!system_.least_squares_multipliers(barrier_, *now_)) now_->lambda.setZero();
+    barrier_.update_stationarity(*now_);
   }
 
   void warm_multipliers(const PointOf<P>& point) {
     mu_.start(Scalar(options_.initial_mu), tolerance());
-    barrier_.x_box().split(now_.x.array(), point.z.array(), mu_.value(), now_.zx);
-    barrier_.s_box().split(now_.s.array(), point.lambda.array(), mu_.value(), now_.zs);
-    if (options_.initial_mu == 0) mu_.start(std::min(barrier_.mean_complementarity(now_), BarrierParameter<Scalar>::kInitial), tolerance());
+    barrier_.x_box().split(now_->x.array(), point.z.array(), mu_.value(), now_->zx);
+    barrier_.s_box().split(now_->s.array(), point.lambda.array(), mu_.value(), now_->zs);
+    if (options_.initial_mu == 0) mu_.start(std::min(barrier_.mean_complementarity(*now_), BarrierParameter<Scalar>::kInitial), tolerance());
   }
 
   void measure() {
-    error_ = barrier_.error(now_, 0);
+    error_ = barrier_.error(*now_, 0);
     if (options_.on_iteration) stopped_ = !options_.on_iteration(describe());
   }
 
   std::optional<Status> stop() {
-    if (error_.max_scaled() <= tolerance() && barrier_.rows_are_firm()) return Status::solved;
+    if (error_.max_scaled() <= tolerance() && iterations_ >= options_.min_iterations && barrier_.rows_are_firm()) return Status::solved;
     if (options_.on_iteration && stopped_) return Status::stopped;
     if (iterations_ >= options_.max_iterations) return Status::iteration_limit;
     if (std::isfinite(options_.time_limit) && elapsed() >= options_.time_limit) return Status::time_limit;
     if (tiny_steps_ >= 2 && mu_.at_end()) return no_progress();
-    if (now_.objective < -kDivergence && error_.primal <= tolerance()) return Status::unbounded;
-    if (now_.x.template lpNorm<Eigen::Infinity>() > kDivergence) return Status::unbounded;
+    if (now_->objective < -kDivergence && error_.primal <= tolerance()) return Status::unbounded;
+    if (now_->x.template lpNorm<Eigen::Infinity>() > kDivergence) return Status::unbounded;
     return std::nullopt;
   }
 
   /// The next barrier problem, as soon as this one is solved well enough; several at once where the iterate allows it.
   void update_barrier() {
-    while (!mu_.at_end() && (mu_.solved(barrier_.error(now_, mu_.value()).max_scaled()) || tiny_steps_ > 0)) {
+    while (!mu_.at_end() && (mu_.solved(barrier_.error(*now_, mu_.value()).max_scaled()) || tiny_steps_ > 0)) {
       mu_.decrease();
       barrier_.soften_rows(mu_.at_end() ? 0 : mu_.value());
       line_search_.reset();
@@ -149,17 +159,17 @@ class NewtonKkt {
   }
 
   bool factor() {
-    barrier_.evaluate_hessian(now_);
-    return system_.factor(barrier_, now_, mu_.value());
+    barrier_.evaluate_hessian(*now_);
+    return system_.factor(barrier_, *now_, mu_.value());
   }
 
   void compute_step() {
-    system_.step(barrier_, now_, mu_.value(), step_);
+    system_.step(barrier_, *now_, mu_.value(), step_);
     const Scalar tau = mu_.tau();
-    alpha_primal_ = std::min(barrier_.x_box().max_step(now_.x.array(), step_.x.array(), tau),
-                             barrier_.s_box().max_step(now_.s.array(), step_.s.array(), tau));
-    alpha_dual_ = std::min(barrier_.x_box().max_multiplier_step(now_.zx, step_.zx, tau),
-                           barrier_.s_box().max_multiplier_step(now_.zs, step_.zs, tau));
+    alpha_primal_ = std::min(barrier_.x_box().max_step(now_->x.array(), step_.x.array(), tau),
+                             barrier_.s_box().max_step(now_->s.array(), step_.s.array(), tau));
+    alpha_dual_ = std::min(barrier_.x_box().max_multiplier_step(now_->zx, step_.zx, tau),
+                           barrier_.s_box().max_multiplier_step(now_->zs, step_.zs, tau));
   }
 
   /// A warm start has a small mu and a guess of the active bounds. Where a bound that it did not guess cuts the step short, the iterates would
@@ -173,49 +183,48 @@ class NewtonKkt {
     ++iterations_;
     mu_.start(kRecentre, tolerance());
     barrier_.soften_rows(mu_.at_end() ? 0 : mu_.value());
-    barrier_.x_box().push_inside(now_.x.array(), kColdPush, kColdPush);
-    barrier_.evaluate(now_);
+    barrier_.x_box().push_inside(now_->x.array(), kColdPush, kColdPush);
+    barrier_.evaluate(*now_);
     set_slacks(kColdPush);
-    barrier_.x_box().centre(now_.x.array(), mu_.value(), now_.zx);
-    barrier_.s_box().centre(now_.s.array(), mu_.value(), now_.zs);
-    barrier_.linearise(now_);
-    line_search_.start(barrier_.violation(now_));
+    barrier_.x_box().centre(now_->x.array(), mu_.value(), now_->zx);
+    barrier_.s_box().centre(now_->s.array(), mu_.value(), now_->zs);
+    barrier_.linearise(*now_);
+    line_search_.start(barrier_.violation(*now_));
   }
 
   bool search() {
     if (!step_.x.allFinite() || !step_.lambda.allFinite()) return false;
-    const Scalar error = barrier_.error(now_, mu_.value()).max_scaled();
-    return line_search_.search(barrier_, system_, now_, step_, alpha_primal_, alpha_dual_, mu_.tau(), mu_.value(), error, trial_);
+    return line_search_.search(barrier_, system_, *now_, step_, alpha_primal_, alpha_dual_, mu_.tau(), mu_.value(), *trial_);
   }
 
   /// No acceptable step from here: a point with less violation, or the end.
   std::optional<Status> restore() {
-    barrier_.return_to(now_);
-    const Scalar theta = barrier_.violation(now_);
+    barrier_.return_to(*now_);
+    const Scalar theta = barrier_.violation(*now_);
     if constexpr (std::is_same_v<Rescue, NoRestoration>) {
       return no_progress();
     } else {
       if (error_.primal <= tolerance() || theta == 0) return no_progress();
-      line_search_.forbid(theta, barrier_.barrier_objective(now_, mu_.value()));
+      line_search_.forbid(theta, barrier_.barrier_objective(*now_, mu_.value()));
       const auto good_enough = [&](const VectorNOf<P>& x) {
-        trial_.x = x;
-        if (!barrier_.evaluate(trial_)) return false;
-        follow_rows(trial_);
-        const Scalar violation = barrier_.violation(trial_);
-        return violation <= kRestored * theta && line_search_.allows(violation, barrier_.barrier_objective(trial_, mu_.value()));
+        trial_->x = x;
+        if (!barrier_.evaluate(*trial_)) return false;
+        follow_rows(*trial_);
+        const Scalar violation = barrier_.violation(*trial_);
+        return violation <= kRestored * theta && line_search_.allows(violation, barrier_.barrier_objective(*trial_, mu_.value()));
       };
       const double time_left = options_.time_limit - (std::isfinite(options_.time_limit) ? elapsed() : 0.0);
-      const auto ended = restoration_.restore(now_.x, mu_.value(), error_.primal, options_.max_iterations - iterations_, time_left, good_enough);
+      const auto ended = restoration_.restore(now_->x, mu_.value(), error_.primal, options_.max_iterations - iterations_, time_left, good_enough);
       iterations_ += 1 + restoration_.iterations();
-      now_.x = restoration_.x();
-      if (!barrier_.evaluate(now_)) return Status::numerical_failure;
-      follow_rows(now_);
-      barrier_.x_box().centre(now_.x.array(), mu_.value(), now_.zx);
-      barrier_.s_box().centre(now_.s.array(), mu_.value(), now_.zs);
-      now_.lambda.setZero();
-      barrier_.linearise(now_);
-      if (!system_.least_squares_multipliers(barrier_, now_)) now_.lambda.setZero();
-      barrier_.update_stationarity(now_);
+      now_->x = restoration_.x();
+      if (!barrier_.evaluate(*now_)) return Status::numerical_failure;
+      follow_rows(*now_);
+      barrier_.x_box().centre(now_->x.array(), mu_.value(), now_->zx);
+      barrier_.s_box().centre(now_->s.array(), mu_.value(), now_->zs);
+      now_->lambda.setZero();
+      barrier_.linearise(*now_);
+      if (!system_.least_squares_multipliers(barrier_, *now_)) now_->lambda.setZero();
+      barrier_.update_stationarity(*now_);
       return ended;
     }
   }
@@ -223,20 +232,20 @@ class NewtonKkt {
   /// Slacks at their rows' values, inside their bounds.
   void follow_rows(Iterate<P>& at) const {
     const auto& box = barrier_.s_box();
-    at.s = (box.free_mask() > 0).select(at.constraints, now_.s);
+    at.s = (box.free_mask() > 0).select(at.constraints, now_->s);
     box.push_inside(at.s.array(), kColdPush, kColdPush);
   }
 
   void accept() {
     alpha_primal_ = line_search_.alpha();
-    const Scalar largest = (step_.x.array().abs() / (1 + now_.x.array().abs())).maxCoeff() * alpha_primal_;
+    const Scalar largest = (step_.x.array().abs() / (1 + now_->x.array().abs())).maxCoeff() * alpha_primal_;
     tiny_steps_ = largest < 10 * std::numeric_limits<Scalar>::epsilon() ? tiny_steps_ + 1 : 0;
 
-    take_dual_step(now_, step_, alpha_dual_, trial_);
-    barrier_.x_box().safeguard(trial_.x.array(), mu_.value(), trial_.zx);
-    barrier_.s_box().safeguard(trial_.s.array(), mu_.value(), trial_.zs);
+    take_dual_step(*now_, step_, alpha_dual_, *trial_);
+    barrier_.x_box().safeguard(trial_->x.array(), mu_.value(), trial_->zx);
+    barrier_.s_box().safeguard(trial_->s.array(), mu_.value(), trial_->zs);
     std::swap(now_, trial_);
-    barrier_.linearise(now_);
+    barrier_.linearise(*now_);
     ++iterations_;
   }
 
@@ -246,22 +255,22 @@ class NewtonKkt {
   }
 
   Result finish(PointOf<P>& point, Status status) {
-    point.x = now_.x;
-    point.lambda = now_.lambda;
+    point.x = now_->x;
+    point.lambda = now_->lambda;
     const auto& box = barrier_.x_box();
     // a fixed variable has the multiplier that balances its stationarity
-    point.z = (box.free_mask() > 0).select(now_.zx.upper - now_.zx.lower, -barrier_.stationarity().array());
+    point.z = (box.free_mask() > 0).select(now_->zx.upper - now_->zx.lower, -barrier_.stationarity().array());
     Result result;
     result.status = status;
     result.iterations = iterations_;
-    result.objective = double(now_.objective);
-    result.residual = kkt_residual(point, barrier_.bounds(), barrier_.gradient(), now_.constraints, barrier_.jacobian());
+    result.objective = double(now_->objective);
+    result.residual = kkt_residual(point, barrier_.bounds(), barrier_.gradient(), now_->constraints, barrier_.jacobian());
     result.elapsed = elapsed();
     return result;
   }
 
   Iteration describe() const {
-    return {iterations_, double(now_.objective), double(error_.primal), double(error_.stationarity), double(error_.complementarity),
+    return {iterations_, double(now_->objective), double(error_.primal), double(error_.stationarity), double(error_.complementarity),
             double(mu_.value()), double(alpha_primal_), double(alpha_dual_), double(system_.regularization()), line_search_.trials()};
   }
 
@@ -281,7 +290,9 @@ class NewtonKkt {
   Rescue restoration_;
   FilterLineSearch<P, Kkt> line_search_;
   BarrierParameter<Scalar> mu_;
-  Iterate<P> now_, trial_;
+  Iterate<P> iterates_[2];
+  Iterate<P>* now_ = &iterates_[0];  // the two change places when a step is accepted
+  Iterate<P>* trial_ = &iterates_[1];
   Step<P> step_;
   BarrierError<Scalar> error_;
   Scalar alpha_primal_ = 0, alpha_dual_ = 0;

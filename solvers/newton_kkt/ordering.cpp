@@ -5,18 +5,18 @@
 //
 // Source of the minimum degree: Amestoy, Davis, Duff, SIAM J. Matrix Anal. Appl. 17 (1996) 886, as implemented in Eigen.
 // Tied pairs: Duff, Pralet, SIAM J. Matrix Anal. Appl. 27 (2005) 313. Equations: linear_algebra.md section 3.
+#include "tenon/solvers/newton_kkt/elimination.hpp"
+
 #include <algorithm>
 #include <numeric>
 
 #include <Eigen/OrderingMethods>
 
-#include "tenon/solvers/newton_kkt/elimination.hpp"
-
 namespace tenon {
 namespace {
 
 // Where untied minimum degree takes less than this share of the work, the delays it will cost are worth it.
-constexpr double kUntiedShare = 0.5;
+constexpr double kUntiedShare = 0.25;
 
 // partner[i] is the variable tied to row i or -1: rows with few choices choose first, and take a variable with few neighbours.
 std::vector<int> tie_rows(const Graph& graph, int n) {

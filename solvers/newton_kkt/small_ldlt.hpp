@@ -1,4 +1,5 @@
-// LDL' of a symmetric matrix of a few rows, without pivoting, every loop of constant length: the 6 x 6 of wrench allocation.
+// LDL' of a symmetric matrix of a few rows, without pivoting: the 6 x 6 of wrench allocation. All loops are of constant length and unrolled,
+// so that the whole factor lives in registers.
 //
 // Without pivoting an indefinite matrix can meet a small pivot; that is reported as a zero, and the caller regularises.
 #pragma once
@@ -18,38 +19,63 @@ class SmallLdlt {
 
   /// Factors the lower triangle of `a`.
   Inertia factor(const Matrix& a) {
-    Inertia inertia;
-    const Scalar tiny = a.diagonal().cwiseAbs().maxCoeff() * std::numeric_limits<Scalar>::epsilon() * 4;
-    l_ = a;
+    Scalar w[M][M];  // w[j][i]: row i of column j, i >= j
+    Scalar largest = 0;
+#pragma GCC unroll 12
     for (int j = 0; j < M; ++j) {
-      const Scalar pivot = l_(j, j);
-      const Scalar inverse = 1 / pivot;
-      inertia.positive += pivot > tiny;
-      inertia.negative += pivot < -tiny;
+#pragma GCC unroll 12
+      for (int i = j; i < M; ++i) w[j][i] = a(i, j);
+      largest = std::max(largest, std::abs(w[j][j]));
+    }
+    Scalar pivots[M];
+#pragma GCC unroll 12
+    for (int j = 0; j < M; ++j) {
+      pivots[j] = w[j][j];
+      const Scalar inverse = 1 / w[j][j];
       inverse_d_[j] = inverse;
+#pragma GCC unroll 12
       for (int k = j + 1; k < M; ++k) {
-        const Scalar factor = l_(k, j) * inverse;
-        for (int i = k; i < M; ++i) l_(i, k) -= l_(i, j) * factor;
+        const Scalar factor = w[j][k] * inverse;
+        l_[j][k] = factor;
+#pragma GCC unroll 12
+        for (int i = k; i < M; ++i) w[k][i] -= w[j][i] * factor;
       }
-      for (int i = j + 1; i < M; ++i) l_(i, j) *= inverse;
+    }
+    const Scalar tiny = largest * std::numeric_limits<Scalar>::epsilon() * 4;
+    Inertia inertia;
+#pragma GCC unroll 12
+    for (int j = 0; j < M; ++j) {
+      inertia.positive += pivots[j] > tiny;
+      inertia.negative += pivots[j] < -tiny;
     }
     inertia.zero = M - inertia.positive - inertia.negative;
     return inertia;
   }
 
+  /// b <- (L D L')^-1 b
   void solve_in_place(Vec& b) const {
+    Scalar x[M];
+#pragma GCC unroll 12
+    for (int i = 0; i < M; ++i) x[i] = b[i];
+#pragma GCC unroll 12
     for (int j = 0; j < M; ++j) {
-      for (int i = j + 1; i < M; ++i) b[i] -= l_(i, j) * b[j];
+#pragma GCC unroll 12
+      for (int i = j + 1; i < M; ++i) x[i] -= l_[j][i] * x[j];
     }
-    b.array() *= inverse_d_.array();
+#pragma GCC unroll 12
+    for (int i = 0; i < M; ++i) x[i] *= inverse_d_[i];
+#pragma GCC unroll 12
     for (int j = M - 1; j >= 0; --j) {
-      for (int i = j + 1; i < M; ++i) b[j] -= l_(i, j) * b[i];
+#pragma GCC unroll 12
+      for (int i = 0; i < j; ++i) x[i] -= l_[i][j] * x[j];
     }
+#pragma GCC unroll 12
+    for (int i = 0; i < M; ++i) b[i] = x[i];
   }
 
  private:
-  Matrix l_;
-  Vec inverse_d_;
+  Scalar l_[M][M];  // l_[j][i]: row i of column j, i > j
+  Scalar inverse_d_[M];
 };
 
 }  // namespace tenon

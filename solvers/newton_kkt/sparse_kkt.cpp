@@ -112,16 +112,18 @@ BackwardError<double> SparseKkt::backward_error() {
   return {(residual_.array().abs() / (weight_.array() + floor)).maxCoeff(), residual_.lpNorm<Eigen::Infinity>()};
 }
 
-void SparseKkt::solve(ConstVectorRef r_x, ConstVectorRef r_c, VectorRef dx, VectorRef dlambda) {
+double SparseKkt::solve(ConstVectorRef r_x, ConstVectorRef r_c, VectorRef dx, VectorRef dlambda) {
   assert(r_x.size() == n_ && r_c.size() == m_ && dx.size() == n_ && dlambda.size() == m_);
   rhs_.head(n_) = scale_.head(n_).cwiseProduct(r_x);
   rhs_.tail(m_) = scale_.tail(m_).cwiseProduct(r_c);
   solution_ = rhs_;
   ldlt_->solve_in_place(solution_.data());
 
-  refine(solution_, residual_, previous_, kRefinements, [this](Vector& x) { ldlt_->solve_in_place(x.data()); }, [this] { return backward_error(); });
+  const BackwardError<double> error = refine(solution_, residual_, previous_, kRefinements,
+                              [this](Vector& x) { ldlt_->solve_in_place(x.data()); }, [this] { return backward_error(); });
   dx = scale_.head(n_).cwiseProduct(solution_.head(n_));
   dlambda = scale_.tail(m_).cwiseProduct(solution_.tail(m_));
+  return error.largest / std::max(rhs_.lpNorm<Eigen::Infinity>(), std::numeric_limits<double>::min());  // (1.5)
 }
 
 }  // namespace tenon
