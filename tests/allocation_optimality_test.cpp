@@ -1,7 +1,6 @@
 // The allocation's answers against Ipopt's: the objective where the wrench can be had, the weighted error where it cannot.
 #include <gtest/gtest.h>
 
-#include "tenon/apps/allocators/allocation_row.hpp"
 #include "tenon/core/as_nlp.hpp"
 #include "tenon/problems/allocation/wrench_allocation.hpp"
 #include "tenon/solvers/make_solver.hpp"
@@ -17,24 +16,36 @@ bool has_ipopt() {
   return false;
 }
 
-TEST(Allocation, ObjectivesAreThoseOfIpopt) {
-  if (!has_ipopt()) GTEST_SKIP() << "Ipopt is not there";
-  const Vehicle vehicle = vehicle_with("momav-bench", false);
-  const auto problem = make_allocation_row(vehicle, {});
-  int failures = 0, row_number = 0;
-  for (const RandomRow& row : random_rows(vehicle, 1000, 1)) {
-    problem->set(row.wrench, row.previous, kSequenceStep);
-    Point start(12, 6);
-    start.x << row.throttle, row.angle;
-    const Measurement ours = problem->measure_fixed_size(start, 0);
-    const Result theirs = make_solver("ipopt", problem->lifted(), {})->solve(start);
-    ASSERT_TRUE(succeeded(theirs.status)) << "row " << row_number;
-    EXPECT_GE(ours.result.iterations, 1);
-    if (!succeeded(ours.result.status)) ++failures;
-    else EXPECT_NEAR(ours.result.objective, theirs.objective, 1e-6 * theirs.objective) << "row " << row_number;
-    ++row_number;
+/// Single ticks of the same allocator on two solvers. Where throttles lie below their soft limit the problem is not convex, and two solvers may
+/// end in different minima of the same row: `elsewhere` rows at most.
+void expect_objectives_of_ipopt(const Vehicle& vehicle, int rows, int elsewhere) {
+  const auto ours = make_allocator(vehicle, "newton-kkt", {}), theirs = make_allocator(vehicle, "ipopt", {});
+  std::vector<std::string> different;
+  int fallbacks = 0;
+  for (const RandomRow& row : random_rows(vehicle, rows, 1)) {
+    ours->reset(row.previous);
+    theirs->reset(row.previous);
+    const Allocation& a = ours->allocate(row.wrench, kSequenceStep);
+    const Allocation& b = theirs->allocate(row.wrench, kSequenceStep);
+    fallbacks += a.status == AllocationStatus::fallback;
+    EXPECT_GE(a.iterations, 1);
+    EXPECT_EQ(a.status, b.status);
+    if (std::abs(a.objective - b.objective) > 1e-6 * b.objective) {
+      different.push_back(std::to_string(a.objective) + " against " + std::to_string(b.objective));
+    }
   }
-  EXPECT_EQ(failures, 0);
+  EXPECT_EQ(fallbacks, 0);
+  EXPECT_LE(std::ssize(different), elsewhere) << testing::PrintToString(different);
+}
+
+TEST(Allocation, WithSoftLimitsObjectivesAreThoseOfIpopt) {
+  if (!has_ipopt()) GTEST_SKIP() << "Ipopt is not there";
+  expect_objectives_of_ipopt(vehicle_with("momav-bench", false), 1000, 0);
+}
+
+TEST(Allocation, WithHardLimitsObjectivesAreThoseOfIpopt) {
+  if (!has_ipopt()) GTEST_SKIP() << "Ipopt is not there";
+  expect_objectives_of_ipopt(vehicle_with("momav-bench", true), 1000, 0);
 }
 
 /// The least weighted error within the box of this tick, from several starts.
