@@ -111,9 +111,18 @@ class TickAllocator final : public Allocator {
     problem_.set_wrench_stiffness(1);
     problem_.set_effort_scale(kFaintEffort);
     start_at_branch(wrench, dt);
-    const bool usable = attempt(rescue_) && judge(wrench);
+    const bool usable = attempt(rescue_);
     problem_.set_effort_scale(1);
-    return usable;
+    if (!usable) return false;
+    if (!nearly_met()) return judge(wrench);
+
+    // it was in reach after all: firm rows again, from there
+    problem_.set_wrench_stiffness(kStiffness);
+    point_.lambda /= kFaintEffort;
+    point_.z /= kFaintEffort;
+    problem_.set_preload(point_.lambda);
+    attempt(solver_);
+    return settle(wrench);
   }
 
   /// x at the arms' reference; an arm that the rate limit holds back starts at its bound, with a multiplier that says so.
@@ -222,7 +231,7 @@ class TickAllocator final : public Allocator {
   }
 
   static constexpr int kMaxIterations = 60;
-  static constexpr int kMaxWarmIterations = 20;
+  static constexpr int kMaxWarmIterations = 14;
   static constexpr int kMaxSettlings = 3;
   static constexpr double kStiffness = 1e6;          // an attainable wrench gives way by 1e-6 times the change of the multipliers
   static constexpr double kFaintEffort = 1e-4;       // per unit of weighted squared wrench error

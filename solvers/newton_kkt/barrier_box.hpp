@@ -34,7 +34,7 @@ class BarrierBox {
     sides_ = 0;
     any_fixed_ = false;
     for (Eigen::Index i = 0; i < v.size(); ++i) {
-      const bool fixed = upper[i] - lower[i] <= 4 * margin(lower[i]);  // no room for an interior
+      const bool fixed = std::isfinite(lower[i]) && upper[i] - lower[i] <= 4 * margin(lower[i]);  // no room for an interior
       fixed_[i] = fixed ? Scalar(kFixedStiffness) : Scalar(0);
       free_[i] = fixed ? Scalar(0) : Scalar(1);
       lower_[i] = fixed ? -kInfinity<Scalar> : lower[i];

@@ -98,6 +98,7 @@ class NewtonSystem {
     rhs_x_ = -r_x_;
     rhs_c_ = -(r_c_ + give_s_.cwiseProduct(r_s_));
     kkt_.solve(rhs_x_, rhs_c_, step.x, step.lambda);
+    if (barrier.x_box().any_fixed()) step.x.array() *= barrier.x_box().free_mask();
     step.s = give_s_.cwiseProduct(step.lambda - r_s_);
     barrier.x_box().multiplier_step(at.x.array(), at.zx, step.x.array(), mu, step.zx);
     barrier.s_box().multiplier_step(at.s.array(), at.zs, step.s.array(), mu, step.zs);
