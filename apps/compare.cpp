@@ -43,8 +43,7 @@ std::vector<std::string> table_row(const std::string& problem, const Measurement
 
 }  // namespace
 
-std::vector<SolverDescription> chosen_solvers(const Arguments& arguments) {
-  const std::vector<SolverDescription> known = list_solvers();
+std::vector<SolverDescription> chosen_solvers(const Arguments& arguments, const std::vector<SolverDescription>& known) {
   std::vector<SolverDescription> chosen;
   if (!arguments.solvers) {
     std::copy_if(known.begin(), known.end(), std::back_inserter(chosen), [](const SolverDescription& s) { return s.available; });
@@ -65,13 +64,26 @@ std::vector<SolverDescription> chosen_solvers(const Arguments& arguments) {
   return chosen;
 }
 
+Json solvers_json(const std::vector<SolverDescription>& solvers) {
+  Json list = Json::array();
+  for (const SolverDescription& s : solvers) {
+    list.push(Json::object().set("name", s.name).set("description", s.description).set("options", s.options));
+  }
+  return list;
+}
+
+void print_solvers(const std::vector<SolverDescription>& solvers) {
+  for (const SolverDescription& s : solvers)
+    fmt::print("{}: {}; {}\n", s.name, s.description, s.options.empty() ? "no further options" : s.options);
+}
+
 int run_compare(const Arguments& arguments) {
   const Options options = arguments.options();
-  const std::vector<SolverDescription> solvers = chosen_solvers(arguments);
   if (std::any_of(arguments.names.begin(), arguments.names.end(), is_vehicle)) {
     if (arguments.names.size() > 1) throw std::invalid_argument("compare: a vehicle stands alone (expected one vehicle, or problems)");
     return compare_vehicle(arguments.names.front(), arguments);
   }
+  const std::vector<SolverDescription> solvers = chosen_solvers(arguments);
   for (const std::string& name : arguments.names) static_cast<void>(find_problem(name));
 
   Table table({"problem", "solver", "status", "objective", "residual", "iterations", "evaluations", "time"});
@@ -100,15 +112,11 @@ int run_compare(const Arguments& arguments) {
     }
   }
   if (arguments.json) {
-    Json used = Json::array();
-    for (const SolverDescription& s : solvers) {
-      used.push(Json::object().set("name", s.name).set("description", s.description).set("options", s.options));
-    }
     print(Json::object()
               .set("schema", 1)
               .set("tolerance", options.tolerance)
               .set("timed_runs", kTimedRuns)
-              .set("solvers", used)
+              .set("solvers", solvers_json(solvers))
               .set("results", rows));
     return kFinished;
   }
@@ -116,8 +124,7 @@ int run_compare(const Arguments& arguments) {
   fmt::print(
       "evaluations: objective/gradient/constraints/Jacobian/Hessian of one solve; residual: the largest of the unscaled KKT residual\n");
   fmt::print("time: the solve alone, median of {}; tolerance {} for all, printing off\n", kTimedRuns, options.tolerance);
-  for (const SolverDescription& s : solvers)
-    fmt::print("{}: {}; {}\n", s.name, s.description, s.options.empty() ? "no further options" : s.options);
+  print_solvers(solvers);
   for (const std::string& refusal : refusals) fmt::print("{}\n", refusal);
   return kFinished;
 }

@@ -5,13 +5,18 @@
 #include <vector>
 
 #include "tenon/apps/arguments.hpp"
+#include "tenon/apps/json.hpp"
 #include "tenon/solvers/make_solver.hpp"
 
 namespace tenon {
 
-/// The back ends to compare: those of --solvers, else every one that is available. Throws std::invalid_argument for one that is not known
+/// Of the `known` back ends those of --solvers, else every one that is available. Throws std::invalid_argument for one that is not known
 /// or not available.
-std::vector<SolverDescription> chosen_solvers(const Arguments& arguments);
+std::vector<SolverDescription> chosen_solvers(const Arguments& arguments, const std::vector<SolverDescription>& known = list_solvers());
+
+/// As the record of a comparison has them: name, description, options.
+Json solvers_json(const std::vector<SolverDescription>& solvers);
+void print_solvers(const std::vector<SolverDescription>& solvers);
 
 /// `tenon compare VEHICLE --rows N --seed S`: random rows of an allocation on every back end. Returns an ExitCode.
 int compare_vehicle(const std::string& vehicle, const Arguments& arguments);

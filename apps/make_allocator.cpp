@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <utility>
 
 #include "tenon/apps/allocators/allocators_of_size.hpp"
+#include "tenon/apps/allocators/with_rotors.hpp"
 #include "tenon/core/nearest_name.hpp"
 #include "tenon/problems/allocation/pseudo_inverse.hpp"
 #include "tenon/solvers/make_solver.hpp"
@@ -19,15 +19,6 @@ namespace {
 constexpr const char* kNewtonKkt = "newton-kkt";          // on the fixed-size problem
 constexpr const char* kNewtonKktSparse = "newton-kkt-sparse";  // the same loop on the lifted problem
 constexpr const char* kPseudoInverse = "pseudo-inverse";
-
-/// f(std::integral_constant<int, N>) for the N that is asked for.
-template <int N = kMinRotors, class Function>
-auto with_rotors(int rotors, Function&& f) {
-  if constexpr (N < kMaxRotors) {
-    if (rotors != N) return with_rotors<N + 1>(rotors, std::forward<Function>(f));
-  }
-  return f(std::integral_constant<int, N>());
-}
 
 }  // namespace
 

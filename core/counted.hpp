@@ -1,4 +1,4 @@
-// CountedNlp: the same problem, with a count of what was evaluated. A decorator, so that no solver counts.
+// CountedNlp, Counted<P>: the same problem, with a count of what was evaluated. Decorators, so that no solver counts.
 #pragma once
 
 #include "tenon/core/nlp.hpp"
@@ -61,6 +61,55 @@ class CountedNlp final : public Nlp {
  private:
   const Nlp& problem_;
   EvaluationCounts& counts_;
+};
+
+/// The same for a problem of fixed size. Counts nothing where `counts` is null, so that one solver serves for counting and for the clock.
+template <NonlinearProgram P>
+  requires kFixedSize<P>
+class Counted {
+ public:
+  using Scalar = typename P::Scalar;
+  using Workspace = WorkspaceOf<P>;
+  using Hessian = HessianOf<P>;
+  static constexpr int kVariables = P::kVariables;
+  static constexpr int kConstraints = P::kConstraints;
+
+  explicit Counted(const P& problem, EvaluationCounts* counts = nullptr) : problem_(problem), counts_(counts) {}
+  void count_into(EvaluationCounts* counts) { counts_ = counts; }
+
+  constexpr int num_variables() const { return kVariables; }
+  constexpr int num_constraints() const { return kConstraints; }
+  Workspace make_workspace() const { return problem_.make_workspace(); }
+  void bounds(BoundsOf<P>& bounds) const { problem_.bounds(bounds); }
+
+  void prepare(const VectorNOf<P>& x, Workspace& at) const {
+    if (counts_) ++counts_->prepare;
+    problem_.prepare(x, at);
+  }
+  Scalar objective(const VectorNOf<P>& x, Workspace& at) const {
+    if (counts_) ++counts_->objective;
+    return problem_.objective(x, at);
+  }
+  void gradient(const VectorNOf<P>& x, Workspace& at, VectorNOf<P>& gradient) const {
+    if (counts_) ++counts_->gradient;
+    problem_.gradient(x, at, gradient);
+  }
+  void constraints(const VectorNOf<P>& x, Workspace& at, VectorMOf<P>& values) const {
+    if (counts_) ++counts_->constraints;
+    problem_.constraints(x, at, values);
+  }
+  void jacobian(const VectorNOf<P>& x, Workspace& at, JacobianOf<P>& jacobian) const {
+    if (counts_) ++counts_->jacobian;
+    problem_.jacobian(x, at, jacobian);
+  }
+  void hessian(const VectorNOf<P>& x, Scalar sigma, const VectorMOf<P>& lambda, Workspace& at, Hessian& hessian) const {
+    if (counts_) ++counts_->hessian;
+    problem_.hessian(x, sigma, lambda, at, hessian);
+  }
+
+ private:
+  const P& problem_;
+  EvaluationCounts* counts_;
 };
 
 }  // namespace tenon

@@ -6,6 +6,7 @@
 
 #include "tenon/core/as_nlp.hpp"
 #include "tenon/core/point.hpp"
+#include "tenon/core/with_slacks.hpp"
 #include "tenon/solvers/make_solver.hpp"
 
 namespace tenon {
@@ -15,9 +16,19 @@ class BackEndSolver {
  public:
   /// `problem` must outlive this. Throws as make_solver() does.
   BackEndSolver(const P& problem, const std::string& name, const Options& options)
-      : problem_(&problem), lifted_(std::make_unique<AsNlp<P>>(problem)), solver_(make_solver(name, *lifted_, options)), point_(P::kVariables, P::kConstraints) {}
+      : problem_(&problem),
+        name_(name),
+        options_(options),
+        lifted_(std::make_unique<AsNlp<P>>(problem)),
+        solver_(make_solver(name, *lifted_, options)),
+        point_(P::kVariables, P::kConstraints) {}
 
   Result solve(PointOf<P>& point) {
+    // A back end that knows hard rows only has slacks for the rows that were compliant when it was made.
+    if (!compliant_ && has_compliant_rows(*lifted_)) {
+      solver_ = make_solver(name_, *lifted_, options_);
+      compliant_ = true;
+    }
     point_.x = point.x;
     point_.lambda = point.lambda;
     point_.z = point.z;
@@ -36,6 +47,9 @@ class BackEndSolver {
 
  private:
   const P* problem_;
+  std::string name_;
+  Options options_;
+  bool compliant_ = false;
   VectorMOf<P> constraints_;
   std::unique_ptr<AsNlp<P>> lifted_;  // at an address that stays when this moves
   std::unique_ptr<Solver> solver_;

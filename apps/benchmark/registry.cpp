@@ -2,10 +2,12 @@
 
 namespace tenon {
 
+void add_allocation(std::vector<Benchmark>& rows);
 void add_linear_allocation(std::vector<Benchmark>& rows);
 
 std::vector<Benchmark> benchmarks() {
   std::vector<Benchmark> rows;
+  add_allocation(rows);
   add_linear_allocation(rows);
   return rows;
 }
