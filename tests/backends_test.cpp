@@ -46,8 +46,9 @@ class BackEnd : public testing::TestWithParam<std::string> {
     if (!is_available(GetParam())) GTEST_SKIP() << GetParam() << " is not available";
   }
 };
-INSTANTIATE_TEST_SUITE_P(Sharp, BackEnd, testing::Values("ipopt", "nlopt-slsqp"),
-                         [](const auto& p) { return p.param == "ipopt" ? "Ipopt" : "Slsqp"; });
+INSTANTIATE_TEST_SUITE_P(Sharp, BackEnd, testing::Values("newton-kkt", "ipopt", "nlopt-slsqp"), [](const auto& p) {
+  return p.param == "newton-kkt" ? "NewtonKkt" : p.param == "ipopt" ? "Ipopt" : "Slsqp";
+});
 
 TEST_P(BackEnd, MultipliersHaveTheSignOfTheSideTheyPushAt) {
   // hs071 as published: x1 at its lower bound 1 (z = -1.0879), product >= 25 active (lambda = -0.5523), sphere equality 0.1615.
