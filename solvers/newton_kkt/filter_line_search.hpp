@@ -32,7 +32,8 @@ class FilterLineSearch {
   /// Whether the last step taken is a second-order correction, whose multiplier steps are its own.
   bool corrected() const { return corrected_last_; }
 
-  /// Looks for an acceptable `trial` = now + alpha step, alpha <= alpha_max; `step` becomes the one taken. False where there is none.
+  /// Looks for an acceptable `trial` = now + alpha step, alpha <= alpha_max; `step` becomes the one taken, and `barrier` is linearised there.
+  /// False where there is none.
   bool search(BarrierProblem<P>& barrier, NewtonSystem<P, Kkt>& system, const Iterate<P>& now, Step<P>& step, Scalar alpha_max,
               Scalar alpha_dual, Scalar tau, Scalar mu, Iterate<P>& trial) {
     theta_ = barrier.violation(now);
@@ -74,7 +75,19 @@ class FilterLineSearch {
     trial_finite_ = barrier.evaluate(trial);
     if (!trial_finite_) return false;
     trial_theta_ = barrier.violation(trial);
-    return acceptable(trial_theta_, barrier.barrier_objective(trial, mu));
+    return acceptable(trial_theta_, barrier.barrier_objective(trial, mu)) && has_derivatives(barrier, now, trial);
+  }
+
+  /// An iterate needs derivatives: a point without them is one where the problem cannot be evaluated.
+  bool has_derivatives(BarrierProblem<P>& barrier, const Iterate<P>& now, const Iterate<P>& trial) {
+    if (barrier.linearise(trial)) return true;
+    come_back(barrier, now);
+    return false;
+  }
+
+  static void come_back(BarrierProblem<P>& barrier, const Iterate<P>& now) {
+    barrier.return_to(now);
+    barrier.linearise(now);
   }
 
   /// Newton's own measure: a full step that brings the primal-dual error down is a good one, even where the barrier objective, which rounding
@@ -85,8 +98,7 @@ class FilterLineSearch {
     if (!(error < kNearSolution)) return false;
     take_dual_step(now, step, alpha_dual, trial);
     if (barrier.linearise(trial) && barrier.error(trial, mu).max_scaled() <= kErrorFall * error) return true;
-    barrier.return_to(now);
-    barrier.linearise(now);
+    come_back(barrier, now);
     return false;
   }
 
@@ -158,7 +170,7 @@ class FilterLineSearch {
       move(barrier, now, step, trial);
       if (!barrier.evaluate(trial)) continue;
       barrier.let_rows_give_way(trial);
-      if (barrier.barrier_objective(trial, mu) <= phi + Scalar(1e-4) * alpha_ * slope + rounding) {
+      if (barrier.barrier_objective(trial, mu) <= phi + Scalar(1e-4) * alpha_ * slope + rounding && has_derivatives(barrier, now, trial)) {
         filter_.clear();
         return true;
       }

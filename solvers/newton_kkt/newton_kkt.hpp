@@ -265,7 +265,6 @@ class NewtonKkt {
     barrier_.x_box().safeguard(trial_->x.array(), mu_.value(), trial_->zx);
     barrier_.s_box().safeguard(trial_->s.array(), mu_.value(), trial_->zs);
     std::swap(now_, trial_);
-    barrier_.linearise(*now_);
     ++iterations_;
   }
 
@@ -285,6 +284,10 @@ class NewtonKkt {
     result.iterations = iterations_;
     result.objective = double(now_->objective);
     result.residual = kkt_residual(point, barrier_.bounds(), barrier_.gradient(), now_->constraints, barrier_.jacobian());
+    if (status == Status::invalid_start) {  // what the ruler read was never written
+      point.z.setZero();
+      result.residual.stationarity = result.residual.complementarity = kInfinity<double>;
+    }
     result.elapsed = elapsed();
     return result;
   }
