@@ -201,8 +201,9 @@ struct CurvedEqualities : FixedSize<S, 3, 2> {
   }
 };
 
-/// min pull x  s.t.  x - e0 >= 1,  x - e1 <= -1: no x meets both. Hard rows (D = 0) are infeasible; compliant ones settle at
-/// x = (D1 - D0 - pull D0 D1) / (D0 + D1), where the two springs and the pull balance.
+/// min pull x  s.t.  x - e0 >= 1,  x - e1 <= -1: no x meets both. Hard rows (D = 0) are infeasible; compliant ones settle where
+/// the springs and the pull balance: at x = (D1 - D0 - pull D0 D1) / (D0 + D1) while both are strained, -1 < x < 1, and below
+/// that, where the second row is met, at x = 1 - pull D0.
 template <class S = double>
 struct OpposedRows : FixedSize<S, 1, 2> {
   using B = FixedSize<S, 1, 2>;

@@ -19,7 +19,9 @@ void expect_honest(const P& problem, const Traced& run) {
   const AsNlp<P> nlp(problem);
   EXPECT_TRUE(run.point.x.allFinite()) << run.point.x.transpose();
   const KktResidual ruler = kkt_residual(nlp, run.point);
-  const auto expect_close = [](double mine, double other) { EXPECT_LE(std::abs(mine - other), 1e-13 * (1 + std::abs(other))) << other; };
+  const auto expect_close = [](double mine, double other) {
+    EXPECT_TRUE(mine == other || std::abs(mine - other) <= 1e-13 * (1 + std::abs(other))) << mine << " and " << other;
+  };
   expect_close(run.result.residual.stationarity, ruler.stationarity);
   expect_close(run.result.residual.primal, ruler.primal);
   expect_close(run.result.residual.complementarity, ruler.complementarity);
@@ -239,7 +241,7 @@ TEST(Status, NumericalFailureWhereOneComponentOfManyIsNotANumber) {
     const Spoilt<EqualityAndBounds<>> problem(what, [](const auto& x) { return x[1] < 4.85; });
     on_both_paths(problem, {.max_iterations = 200}, [&](const Traced& run) {
       expect_status(run, Status::numerical_failure);
-      expect_last_iterate(problem, run);
+      expect_honest(problem, run);
     });
   }
 }

@@ -12,7 +12,8 @@ namespace {
 
 template <class P>
 class BothPaths : public testing::Test {};
-using Problems = testing::Types<EqualityAndBounds<>, TwoSidedRows<>, NonConvex<>, FixedVariable<>, BallAndBox<>, CurvedEqualities<>, SpringRow<>>;
+using Problems =
+    testing::Types<EqualityAndBounds<>, TwoSidedRows<>, NonConvex<>, FixedVariable<>, BallAndBox<>, CurvedEqualities<>, SpringRow<>>;
 TYPED_TEST_SUITE(BothPaths, Problems);
 
 void expect_close(double a, double b, double tolerance, const char* what, int line) {
