@@ -14,7 +14,9 @@ KktResidual kkt_residual(const Nlp& problem, const Point& point) {
   problem.gradient(point.x, workspace, gradient);
   problem.constraints(point.x, workspace, constraints);
   problem.jacobian(point.x, workspace, values_of(jacobian));
-  return kkt_residual(point, bounds, gradient, constraints, jacobian);
+  const Vector stationarity = gradient + point.z + jacobian.transpose() * point.lambda;
+  const Vector rows = constraints - bounds.compliance.cwiseProduct(point.lambda - bounds.preload);
+  return kkt_residual(point, bounds, stationarity, rows);
 }
 
 }  // namespace tenon

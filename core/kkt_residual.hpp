@@ -49,24 +49,19 @@ double violation(const Vec& v, const Vec& lower, const Vec& upper) {
 
 }  // namespace detail
 
-/// Residual from evaluations at point.x: gradient (n), constraints (m), Jacobian (m x n, dense or sparse).
-template <class Scalar, int N, int M, class JacobianType>
+/// Residual from what holds at the point: stationarity = grad f + J' lambda + z (n), rows = c(x) - D (lambda - preload) (m).
+template <class Scalar, int N, int M>
 KktResidual kkt_residual(const BasicPoint<Scalar, N, M>& point, const BasicBounds<Scalar, N, M>& bounds,
-                         const Eigen::Matrix<Scalar, N, 1>& gradient, const Eigen::Matrix<Scalar, M, 1>& constraints,
-                         const JacobianType& jacobian) {
+                         const Eigen::Matrix<Scalar, N, 1>& stationarity, const Eigen::Matrix<Scalar, M, 1>& rows) {
   KktResidual residual;
   const auto n = point.x.size(), m = point.lambda.size();
-  Eigen::Matrix<Scalar, N, 1> stationarity = gradient + point.z;
-  if (m > 0) stationarity.noalias() += jacobian.transpose() * point.lambda;
   residual.stationarity = stationarity.allFinite() ? double(stationarity.template lpNorm<Eigen::Infinity>()) : kInfinity<double>;
-
-  const Eigen::Matrix<Scalar, M, 1> rows = constraints - bounds.compliance.cwiseProduct(point.lambda - bounds.preload);
   residual.primal = std::max(detail::violation(point.x, bounds.x_lower, bounds.x_upper), detail::violation(rows, bounds.c_lower, bounds.c_upper));
   residual.complementarity = std::max(detail::complementarity(point.x, bounds.x_lower, bounds.x_upper, point.z),
                                       detail::complementarity(rows, bounds.c_lower, bounds.c_upper, point.lambda));
   const double multiplier_sum = double(point.z.template lpNorm<1>() + point.lambda.template lpNorm<1>());
   constexpr double kMultiplierScale = 100;  // s_max
-  residual.scale = std::max(kMultiplierScale, double(multiplier_sum) / double(std::max<Eigen::Index>(1, n + m))) / kMultiplierScale;
+  residual.scale = std::max(kMultiplierScale, multiplier_sum / double(std::max<Eigen::Index>(1, n + m))) / kMultiplierScale;
   return residual;
 }
 

@@ -42,6 +42,7 @@ class BarrierProblem {
         hessian_(zero_hessian(problem)) {
     gradient_.setZero(n_);
     stationarity_.setZero(n_);
+    compliance_.setZero(m_);
   }
 
   int n() const { return n_; }
@@ -105,9 +106,9 @@ class BarrierProblem {
 
   void evaluate_hessian(const Iterate<P>& at) { problem_.hessian(at.x, Scalar(1), at.lambda, workspace_, values_of(hessian_)); }
 
-  /// r_c = c(x) - s - D (lambda - preload)
+  /// r_c = c(x) - s - D (lambda - preload), as an expression: it refers to `at`.
   auto row_residual(const Iterate<P>& at) const {
-    return (at.constraints - at.s - compliance_.cwiseProduct(at.lambda - bounds_.preload)).eval();
+    return at.constraints - at.s - compliance_.cwiseProduct(at.lambda - bounds_.preload);
   }
 
   bool all_rows_compliant() const { return all_compliant_; }
@@ -135,7 +136,7 @@ class BarrierProblem {
   Scalar barrier_objective(const Iterate<P>& at, Scalar mu) const {
     Scalar phi = at.objective;
     if (compliant_) {
-      const auto lean = (at.lambda - bounds_.preload).array();  // e = D lean
+      const auto lean = at.lambda.array() - bounds_.preload.array();  // e = D lean
       phi += (compliance_.array() * lean * (lean / 2 + bounds_.preload.array())).sum();
     }
     if (sides() > 0) phi -= mu * (x_box_.log_barrier(at.x.array()) + s_box_.log_barrier(at.s.array()));
@@ -152,7 +153,7 @@ class BarrierProblem {
   /// How far the linearised iterate is from solving the barrier problem of this mu (mu = 0: the problem itself).
   BarrierError<Scalar> error(const Iterate<P>& at, Scalar mu) const {
     BarrierError<Scalar> out;
-    const auto free_x = x_box_.free_mask(), free_s = s_box_.free_mask();
+    const auto &free_x = x_box_.free_mask(), &free_s = s_box_.free_mask();
     out.stationarity = (free_x * (stationarity_.array() + at.zx.upper - at.zx.lower)).abs().maxCoeff();
     Scalar multipliers = 0;
     if (m_ > 0) {

@@ -18,6 +18,7 @@ class FilterLineSearch {
   void reset() { filter_.clear(); }
   void start(Scalar theta) {
     filter_.clear();
+    trials_ = 0;
     theta_max_ = Scalar(1e4) * std::max(Scalar(1), theta);
     theta_min_ = Scalar(1e-4) * std::max(Scalar(1), theta);
   }

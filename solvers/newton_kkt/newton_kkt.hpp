@@ -231,6 +231,11 @@ class NewtonKkt {
       const auto ended = restoration_.restore(now_->x, std::max(mu_.value(), theta), options_.max_iterations - iterations_, time_left,
                                               violation, good_enough);
       iterations_ += 1 + restoration_.iterations();
+      if (ended && *ended != Status::infeasible) {  // the last accepted iterate stands
+        barrier_.evaluate(*now_);
+        barrier_.linearise(*now_);
+        return ended;
+      }
       return go_on_from_restored(ended);
     }
   }
@@ -283,7 +288,9 @@ class NewtonKkt {
     result.status = status;
     result.iterations = iterations_;
     result.objective = double(now_->objective);
-    result.residual = kkt_residual(point, barrier_.bounds(), barrier_.gradient(), now_->constraints, barrier_.jacobian());
+    step_.x = barrier_.stationarity() + point.z;  // the step is done with: its storage serves the ruler
+    step_.s = now_->constraints - barrier_.bounds().compliance.cwiseProduct(point.lambda - barrier_.bounds().preload);
+    result.residual = kkt_residual(point, barrier_.bounds(), step_.x, step_.s);
     if (status == Status::invalid_start) {  // what the ruler read was never written
       point.z.setZero();
       result.residual.stationarity = result.residual.complementarity = kInfinity<double>;

@@ -26,7 +26,10 @@ class NewtonSystem {
     for (VectorM* v : {&give_s_, &d_, &r_s_, &r_c_, &rhs_c_}) v->setZero(m);
   }
 
-  void reset() { correction_.reset(); }
+  void reset() {
+    correction_.reset();
+    delta_w_ = 0;
+  }
   Scalar regularization() const { return delta_w_; }
 
   /// Factors K at `at`, correcting the Hessian until the inertia is (n, m, 0). False where no correction helps.

@@ -42,7 +42,8 @@ class Restoration {
       const Result result = solver_.solve(point_, [&](const auto& iterate) { return enough(iterate.x); });
       iterations_ += result.iterations;
       if (result.status == Status::stopped) return std::nullopt;
-      if (!succeeded(result.status)) return result.status;
+      if (result.status == Status::iteration_limit || result.status == Status::time_limit) return result.status;
+      if (!succeeded(result.status)) return Status::numerical_failure;
 
       // converged: what is left, against zeta W^2 (x - x_R), the force with which the proximal term still holds x back
       const Scalar left = violation(point_.x);
