@@ -1,11 +1,13 @@
-// A user's own problem, measured by the installed library:
+// A user's own problem, solved and measured by the installed library:
 //
 //     min sum_i x_i    subject to    sum_i x_i^2 <= n        with the solution x_i = -1, lambda = 1/2
 //
-// Returns 0 where the ruler finds the solution good and another point bad.
+// Returns 0 where the ruler finds the solution good and another point bad, and the solver finds it too.
+#include <cmath>
 #include <cstdio>
 
 #include <tenon/core/kkt_residual.hpp>
+#include <tenon/solvers/newton_kkt/make_newton_kkt.hpp>
 
 #ifdef __AVX__
 #error "the library is built for newer processors than its user: this one is to be compiled without -march"
@@ -43,5 +45,9 @@ int main() {
   point.lambda[0] = 0.5;
   const double solved = tenon::kkt_residual(ball, point).max();
   std::printf("residual %g at the solution, %g at 0\n", solved, away);
-  return solved == 0 && away == 1 ? 0 : 1;
+
+  tenon::Point found(n, 1);
+  const tenon::Result result = tenon::make_newton_kkt(ball, {})->solve(found);
+  std::printf("newton-kkt: %s after %d iterations, x[0] = %.9f\n", tenon::to_string(result.status).data(), result.iterations, found.x[0]);
+  return solved == 0 && away == 1 && result.status == tenon::Status::solved && std::abs(found.x[0] + 1) < 1e-6 ? 0 : 1;
 }
