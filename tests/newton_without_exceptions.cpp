@@ -8,15 +8,17 @@
 
 namespace tenon {
 
-template class NewtonKkt<TwoSidedRows<double>>;
-template class NewtonKkt<TwoSidedRows<float>, KktOf<TwoSidedRows<float>>, NoRestoration, NoClock>;
-
+template <class Problem, class Solver>
 Result solve_without_exceptions() {
-  const TwoSidedRows<double> problem;
-  NewtonKkt<TwoSidedRows<double>> solver(problem);
-  PointOf<TwoSidedRows<double>> point;
+  const Problem problem;
+  Solver solver(problem);
+  PointOf<Problem> point;
   problem.initial_point(point.x);
   return solver.solve(point);
 }
+
+using Small = TwoSidedRows<float>;
+template Result solve_without_exceptions<TwoSidedRows<double>, NewtonKkt<TwoSidedRows<double>>>();
+template Result solve_without_exceptions<Small, NewtonKkt<Small, KktOf<Small>, NoRestoration, NoClock>>();
 
 }  // namespace tenon
