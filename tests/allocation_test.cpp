@@ -55,12 +55,12 @@ TEST(WrenchAllocation, ObeysTheDerivativeLaw) {
   }
 }
 
-/// Two traces agree to 1e-9 up to the last step; at the end there is nothing left but rounding.
+/// Two traces agree to 1e-8 up to the last step (a path of ten steps multiplies the rounding of two factorisations: 2e-9 was seen); at the end there is nothing left but rounding.
 void expect_same_trace(const std::vector<Iteration>& fixed, const std::vector<Iteration>& sparse, std::size_t row) {
   ASSERT_EQ(fixed.size(), sparse.size()) << "row " << row;
   for (std::size_t k = 0; k + 1 < fixed.size(); ++k) {
     const auto expect_near = [&](double a, double b, double scale) {
-      EXPECT_NEAR(a, b, 1e-9 * std::max({scale, std::abs(a), std::abs(b)})) << "row " << row << ", iteration " << k;
+      EXPECT_NEAR(a, b, 1e-8 * std::max({scale, std::abs(a), std::abs(b)})) << "row " << row << ", iteration " << k;
     };
     expect_near(fixed[k].objective, sparse[k].objective, 0);
     expect_near(fixed[k].primal, sparse[k].primal, 1e-2);
