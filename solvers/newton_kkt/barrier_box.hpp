@@ -50,7 +50,6 @@ class BarrierBox {
   /// Number of finite sides; 0 means that there is no barrier at all.
   int sides() const { return sides_; }
   bool any_fixed() const { return any_fixed_; }
-  bool is_fixed(Eigen::Index i) const { return fixed_[i] > 0; }
   const Array& fixed_stiffness() const { return fixed_; }
   const Array& free_mask() const { return free_; }  // 0 where fixed, else 1
 
@@ -171,21 +170,14 @@ class BarrierBox {
     return largest;
   }
 
-  struct Products {
-    Scalar sum = 0, smallest = kInfinity<Scalar>;
-  };
-  Products products(const auto& v, const Multipliers& z) const {
-    Products out;
-    if (sides_ == 0) return out;
-    const auto add = [&](Scalar product) {
-      out.sum += product;
-      out.smallest = std::min(out.smallest, product);
-    };
+  Scalar sum_of_products(const auto& v, const Multipliers& z) const {
+    Scalar sum = 0;
+    if (sides_ == 0) return sum;
     for (Eigen::Index i = 0; i < v.size(); ++i) {
-      if (lower_[i] > -kInfinity<Scalar>) add(z.lower[i] * (v[i] - lower_[i]));
-      if (upper_[i] < kInfinity<Scalar>) add(z.upper[i] * (upper_[i] - v[i]));
+      if (lower_[i] > -kInfinity<Scalar>) sum += z.lower[i] * (v[i] - lower_[i]);
+      if (upper_[i] < kInfinity<Scalar>) sum += z.upper[i] * (upper_[i] - v[i]);
     }
-    return out;
+    return sum;
   }
 
  private:
@@ -196,8 +188,8 @@ class BarrierBox {
 
   Array lower_, upper_;
   Array lowest_, highest_;  // the same, a few units of rounding inside
-  Array fixed_;  // 0, or kFixedStiffness
-  Array free_;   // 1, or 0
+  Array fixed_;             // 0, or kFixedStiffness
+  Array free_;              // 1, or 0
   int sides_ = 0;
   bool any_fixed_ = false;
 };

@@ -174,7 +174,7 @@ class BarrierProblem {
   /// Mean product of multipliers and distances; 0 without bounds.
   Scalar mean_complementarity(const Iterate<P>& at) const {
     if (sides() == 0) return 0;
-    return (x_box_.products(at.x.array(), at.zx).sum + s_box_.products(at.s.array(), at.zs).sum) / Scalar(sides());
+    return (x_box_.sum_of_products(at.x.array(), at.zx) + s_box_.sum_of_products(at.s.array(), at.zs)) / Scalar(sides());
   }
 
  private:

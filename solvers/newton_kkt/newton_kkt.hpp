@@ -39,8 +39,7 @@ class NewtonKkt {
 
   /// Allocates all that a solve needs. The problem must outlive this; its bounds are asked for at every solve.
   explicit NewtonKkt(const P& problem, Options options = {})
-      : problem_(problem),
-        options_(std::move(options)),
+      : options_(std::move(options)),
         barrier_(problem),
         system_(problem),
         restoration_(problem, options_),
@@ -103,7 +102,7 @@ class NewtonKkt {
     const Scalar push = options_.warm_start ? kWarmPush : kColdPush;
     barrier_.x_box().push_inside(now_->x.array(), push, push);
     if (!barrier_.evaluate(*now_)) return Status::invalid_start;
-    set_slacks(push);
+    follow_rows(*now_, push);
     if (!barrier_.linearise(*now_)) return Status::invalid_start;
     if (options_.warm_start) warm_multipliers(point);
     else cold_multipliers();
@@ -113,10 +112,11 @@ class NewtonKkt {
     return std::nullopt;
   }
 
-  void set_slacks(Scalar push) {
+  /// Slacks at their rows' values, inside their bounds.
+  void follow_rows(Iterate<P>& at, Scalar push) const {
     const auto& box = barrier_.s_box();
-    now_->s = (box.free_mask() > 0).select(now_->constraints, now_->s);
-    box.push_inside(now_->s.array(), push, push);
+    at.s = (box.free_mask() > 0).select(at.constraints, now_->s);
+    box.push_inside(at.s.array(), push, push);
   }
 
   void cold_multipliers() {
@@ -195,7 +195,7 @@ class NewtonKkt {
       now_->x = trial_->x;
       barrier_.evaluate(*now_);
     }
-    set_slacks(kColdPush);
+    follow_rows(*now_, kColdPush);
     barrier_.x_box().centre(now_->x.array(), mu_.value(), now_->zx);
     barrier_.s_box().centre(now_->s.array(), mu_.value(), now_->zs);
     barrier_.linearise(*now_);
@@ -220,7 +220,7 @@ class NewtonKkt {
       const auto violation = [&](const VectorN& x) {
         trial_->x = x;
         if (!barrier_.evaluate(*trial_)) return kInfinity<Scalar>;
-        follow_rows(*trial_);
+        follow_rows(*trial_, kColdPush);
         return barrier_.hard_violation(*trial_);
       };
       const auto good_enough = [&](const VectorN& x) {
@@ -236,14 +236,15 @@ class NewtonKkt {
         barrier_.linearise(*now_);
         return ended;
       }
-      return go_on_from_restored(ended);
+      return go_on_from(restoration_.x(), ended);
     }
   }
 
-  std::optional<Status> go_on_from_restored(std::optional<Status> ended) {
-    now_->x = restoration_.x();
+  /// From a restored x, unless it is the end.
+  std::optional<Status> go_on_from(const VectorN& x, std::optional<Status> ended) {
+    now_->x = x;
     if (!barrier_.evaluate(*now_)) return Status::numerical_failure;
-    follow_rows(*now_);
+    follow_rows(*now_, kColdPush);
     barrier_.x_box().centre(now_->x.array(), mu_.value(), now_->zx);
     barrier_.s_box().centre(now_->s.array(), mu_.value(), now_->zs);
     now_->lambda.setZero();
@@ -251,13 +252,6 @@ class NewtonKkt {
     if (!system_.least_squares_multipliers(barrier_, *now_)) now_->lambda.setZero();
     barrier_.update_stationarity(*now_);
     return ended;
-  }
-
-  /// Slacks at their rows' values, inside their bounds.
-  void follow_rows(Iterate<P>& at) const {
-    const auto& box = barrier_.s_box();
-    at.s = (box.free_mask() > 0).select(at.constraints, now_->s);
-    box.push_inside(at.s.array(), kColdPush, kColdPush);
   }
 
   void accept() {
@@ -313,7 +307,6 @@ class NewtonKkt {
   static constexpr Scalar kDivergence = Scalar(1e20);
   static constexpr Scalar kRestored = Scalar(0.9);   // kappa_resto of [WB06, sec. 3.3]
 
-  const P& problem_;
   Options options_;
   BarrierProblem<P> barrier_;
   NewtonSystem<P, Kkt> system_;

@@ -1,9 +1,9 @@
 // The Newton system of the barrier problem: assembled, factored with the right inertia, solved for a step.
 //
 //     [ H + Sigma_x + delta_w I    J'                          ] [ dx      ]       [ r_x             ]
-//     [ J                          -(1/Sigma_s + D + delta_c)  ] [ dlambda ]  =  - [ r_c + r_s/Sigma_s ]        newton_kkt.md (7),
+//     [ J                          -(1/S + D + delta_c)        ] [ dlambda ]  =  - [ r_c + r_s/S ]              newton_kkt.md (7),
 //
-// with r_x = grad f + J' lambda - mu/(x - l) + mu/(u - x), r_s = -lambda - mu/(s - l) + mu/(u - s), ds = (dlambda - r_s)/Sigma_s.
+// with r_x = grad f + J' lambda - mu/(x - l) + mu/(u - x), r_s = -lambda - mu/(s - l) + mu/(u - s), S = Sigma_s + delta_w and ds = (dlambda - r_s)/S.
 #pragma once
 
 #include "tenon/solvers/newton_kkt/barrier_problem.hpp"
