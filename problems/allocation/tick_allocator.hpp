@@ -151,8 +151,9 @@ class TickAllocator final : public Allocator {
   /// Rows that give way a little because the multipliers differ from their preload are made exact: the preload follows.
   bool settle(const Wrench& wrench) {
     for (int k = 0; k < kMaxSettlings && !met(wrench) && nearly_met(); ++k) {
+      const double before = out_.error.template lpNorm<Eigen::Infinity>();
       problem_.set_preload(point_.lambda);
-      if (!attempt(solver_)) break;
+      if (!attempt(solver_) || out_.error.template lpNorm<Eigen::Infinity>() > kSettling * before) break;
     }
     return judge(wrench);
   }
@@ -245,6 +246,7 @@ class TickAllocator final : public Allocator {
   static constexpr int kMaxIterations = 60;
   static constexpr int kMaxWarmIterations = 14;
   static constexpr int kMaxSettlings = 3;
+  static constexpr double kSettling = 0.1;           // what is out of reach does not settle
   static constexpr double kStiffness = 1e6;          // an attainable wrench gives way by 1e-6 times the change of the multipliers
   static constexpr double kFaintEffort = 1e-4;       // per unit of weighted squared wrench error
   static constexpr double kMetRelative = 1e-8;

@@ -14,8 +14,8 @@ struct Step {
   VectorNOf<P> x;       // n
   VectorMOf<P> s;       // m: slack of each row
   VectorMOf<P> lambda;  // m
-  BoxMultipliers<Scalar, P::kVariables> zx;
-  BoxMultipliers<Scalar, P::kConstraints> zs;
+  BoxSides<Scalar, P::kVariables> zx;
+  BoxSides<Scalar, P::kConstraints> zs;
 
   Step(int n, int m) {
     x.setZero(n);
