@@ -26,6 +26,14 @@ std::vector<Violation> violations(const Nlp& problem, const Vector& x, double to
   return found;
 }
 
+Json violations_json(const Nlp& problem, const Vector& x, double tolerance) {
+  Json list = Json::array();
+  for (const Violation& v : violations(problem, x, tolerance)) {
+    list.push(Json::object().set("name", v.name).set("violation", v.violation));
+  }
+  return list;
+}
+
 Json residual_json(const KktResidual& residual) {
   return Json::object()
       .set("stationarity", residual.stationarity)
@@ -51,13 +59,7 @@ Json result_json(const Nlp& problem, const Measurement& measurement, double tole
   json.set("objective", result.objective).set("iterations", result.iterations).set("time_s", measurement.time);
   json.set("residual", residual_json(result.residual)).set("evaluations", evaluations_json(measurement.counts));
   json.set("x", measurement.point.x).set("lambda", measurement.point.lambda).set("z", measurement.point.z);
-  if (result.status == Status::infeasible) {
-    Json list = Json::array();
-    for (const Violation& v : violations(problem, measurement.point.x, tolerance)) {
-      list.push(Json::object().set("name", v.name).set("violation", v.violation));
-    }
-    json.set("infeasible_constraints", list);
-  }
+  if (result.status == Status::infeasible) json.set("infeasible_constraints", violations_json(problem, measurement.point.x, tolerance));
   return json;
 }
 

@@ -15,6 +15,9 @@ struct Violation {
 };
 std::vector<Violation> violations(const Nlp& problem, const Vector& x, double tolerance);
 
+/// Their names and violations.
+Json violations_json(const Nlp& problem, const Vector& x, double tolerance);
+
 Json residual_json(const KktResidual& residual);
 Json evaluations_json(const EvaluationCounts& counts);
 
