@@ -103,7 +103,7 @@ int run_compare(const Arguments& arguments) {
           refusals.push_back(fmt::format("{} on {}: {}", name, solver.name, m.refusal));
           rows.push(Json::object().set("problem", name).set("solver", solver.name).set("refusal", m.refusal));
         } else {
-          Json row = result_json(*problem, m, options.tolerance);
+          Json row = result_json(*problem, m);
           if (entry.published_objective) row.set("published_objective", *entry.published_objective);
           rows.push(row);
         }

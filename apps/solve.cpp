@@ -9,6 +9,7 @@
 #include "tenon/apps/result_json.hpp"
 #include "tenon/apps/table.hpp"
 #include "tenon/apps/verb.hpp"
+#include "tenon/core/explanation.hpp"
 #include "tenon/problems/catalogue.hpp"
 #include "tenon/solvers/make_solver.hpp"
 
@@ -26,23 +27,22 @@ std::string default_solver() {
   throw std::invalid_argument("no solver is available (expected a build with at least one back end)");
 }
 
-void print_result(const Nlp& problem, const CatalogueEntry& entry, const Measurement& m, double tolerance) {
+void print_result(const Nlp& problem, const CatalogueEntry& entry, const Measurement& m) {
   const Result& result = m.result;
   const auto line = [](const char* what, const std::string& value) { fmt::print("  {:<14}{}\n", what, value); };
   fmt::print("{} by {}: {}\n", entry.name, m.solver, to_string(result.status));
   line("objective", fmt::format("{:.12g}", result.objective));
   if (entry.published_objective) line("published", fmt::format("{:.12g}", *entry.published_objective));
   line("iterations", fmt::format("{}", result.iterations));
-  line("residual", fmt::format("stationarity {:.2e}, primal {:.2e}, complementarity {:.2e}", result.residual.stationarity,
-                               result.residual.primal, result.residual.complementarity));
+  const auto residual_text = [](const KktResidual& r) {
+    return fmt::format("stationarity {:.2e}, primal {:.2e}, complementarity {:.2e}", r.stationarity, r.primal, r.complementarity);
+  };
+  line("residual", residual_text(result.residual));
+  if (result.scaled_residual) line("scaled", residual_text(*result.scaled_residual));
   line("evaluations", fmt::format("{} objective, {} gradient, {} constraints, {} Jacobian, {} Hessian", m.counts.objective,
                                   m.counts.gradient, m.counts.constraints, m.counts.jacobian, m.counts.hessian));
   line("time", duration_text(m.time));
-  if (result.status == Status::infeasible) {
-    for (const Violation& v : violations(problem, m.point.x, tolerance)) {
-      line("violated", fmt::format("{} = {:.6g}, not in [{}, {}]", v.name, v.value, v.lower, v.upper));
-    }
-  }
+  fmt::print("{}", explain(problem, m.point, result).text());
   Table table({"", "variable", "value", "multiplier"});
   const int shown = std::min(problem.num_variables(), kVariablesShown);
   for (int i = 0; i < shown; ++i) {
@@ -64,9 +64,9 @@ int run_solve(const Arguments& arguments) {
   if (!m.refusal.empty()) throw std::invalid_argument(m.refusal);
   observers.finish();
   if (arguments.json)
-    print(result_json(*problem, m, options.tolerance));
+    print(result_json(*problem, m));
   else if (!arguments.quiet)
-    print_result(*problem, entry, m, options.tolerance);
+    print_result(*problem, entry, m);
   if (interrupted()) return kInterrupted;
   return succeeded(m.result.status) ? kFinished : kNotSolved;
 }
