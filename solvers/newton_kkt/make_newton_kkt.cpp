@@ -100,6 +100,7 @@ class SparseNewtonKkt final : public Solver {
 
 std::unique_ptr<Solver> make_newton_kkt(const Nlp& problem, const Options& options) {
   validate(options);
+  refuse_soft_rows(problem);
   return std::make_unique<SparseNewtonKkt>(problem, options);
 }
 
