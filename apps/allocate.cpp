@@ -42,22 +42,24 @@ void write_row(CsvWriter& csv, double t, const Allocation& allocation) {
   csv.end_row();
 }
 
-/// Hands the vehicle's failures to the allocator when their time has come.
+/// Hands the vehicle's failures to the allocator and its judge when their time has come.
 class Failures {
  public:
   explicit Failures(const Vehicle& vehicle)
       : vehicle_(vehicle), rotor_(vehicle.rotors.size(), false), servo_(vehicle.rotors.size(), false) {}
 
-  void apply(double t, Allocator& allocator, bool quiet) {
+  void apply(double t, Allocator& allocator, AllocationSummary& summary, bool quiet) {
     for (std::size_t i = 0; i < rotor_.size(); ++i) {
       if (!rotor_[i] && t >= vehicle_.rotors[i].fails_at) {
         rotor_[i] = true;
         allocator.fail_rotor(static_cast<int>(i));
+        summary.fail_rotor(static_cast<int>(i));
         if (!quiet) fmt::print(stderr, "t = {} s: rotor {} fails\n", t, i + 1);
       }
       if (!servo_[i] && t >= vehicle_.rotors[i].servo_sticks_at) {
         servo_[i] = true;
         allocator.stick_servo(static_cast<int>(i));
+        summary.stick_servo(static_cast<int>(i));
         if (!quiet) fmt::print(stderr, "t = {} s: the servo of rotor {} sticks\n", t, i + 1);
       }
     }
@@ -107,7 +109,7 @@ int run_allocate(const Arguments& arguments) {
     for (std::size_t k = 0; k < log.size() && !interrupted(); ++k) {
       if (arguments.cold) allocator->reset();
       observers.begin_row(static_cast<long>(k));
-      failures.apply(log[k].t, *allocator, arguments.quiet);
+      failures.apply(log[k].t, *allocator, summary, arguments.quiet);
       const Allocation& allocation = allocator->allocate(log[k].wrench, log[k].dt);
       if (csv) write_row(*csv, log[k].t, allocation);
       summary.add(log[k].wrench, log[k].dt, k > 0 && !arguments.cold, allocation);

@@ -15,7 +15,6 @@ AllocationSummary::AllocationSummary(const Vehicle& vehicle, std::string solver)
     : vehicle_(vehicle.name),
       solver_(std::move(solver)),
       linear_(vehicle),
-      has_bound_(linear_.has_linear_thrust() && linear_.rank() == 6),
       last_angle_(Vector::Zero(vehicle.num_rotors())),
       throttle_lowest_(std::numeric_limits<double>::infinity()),
       throttle_highest_(-throttle_lowest_) {}
@@ -32,7 +31,7 @@ void AllocationSummary::add(const Wrench& asked, double dt, bool has_past, const
   if (has_past) angle_rate_ = std::max(angle_rate_, (allocation.angle - last_angle_).lpNorm<Eigen::Infinity>() / dt);
   last_angle_ = allocation.angle;
   effort_.push_back(allocation.throttle.squaredNorm());
-  const double bound = has_bound_ ? linear_.effort_lower_bound(asked) : 0;
+  const double bound = linear_.has_linear_thrust() && linear_.rank() == 6 ? linear_.effort_lower_bound(asked) : 0;
   if (bound > 0 && allocation.status == AllocationStatus::solved)
     over_bound_.push_back(std::max(0.0, effort_.back() / bound - 1));  // less is rounding
   seconds_.push_back(allocation.elapsed);

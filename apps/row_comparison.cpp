@@ -18,6 +18,7 @@ namespace tenon {
 namespace {
 
 constexpr double kAgreement = 1e-6;  // relative, of objectives
+constexpr std::size_t kNamedRows = 20;
 
 template <class Cells, class Value>
 std::vector<double> each(const Cells& cells, Value value) {
@@ -122,8 +123,11 @@ std::string RowComparison::text() const {
         if (s.stationary == stationary) rows.push_back(s.row + 1);
       }
       if (rows.empty()) continue;
-      below += fmt::format("{}: {} in row{} {}\n", column.solver, stationary ? "a stationary point of a higher objective" : "no solution",
-                           rows.size() == 1 ? "" : "s", fmt::join(rows, ", "));
+      const std::size_t more = rows.size() - std::min(rows.size(), kNamedRows);
+      rows.resize(rows.size() - more);
+      below += fmt::format("{}: {} in row{} {}{}\n", column.solver,
+                           stationary ? "a stationary point of a higher objective" : "no solution", rows.size() == 1 ? "" : "s",
+                           fmt::join(rows, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
     }
   }
   return table.text() + (below.empty() ? "" : "\n") + below;

@@ -93,9 +93,8 @@ TEST_P(HoverSweep, NoiseCausesNoFailure) {
     const std::vector<Wrench> noisy = with_noise(wrenches_of(log), 0.5, 0.05, 11);
     expect_limits_kept(run_newton(vehicle_with(name, true), noisy));
     const AllocationRun soft = run_newton(vehicle_with(name, false), noisy);
-    // A known shortfall: under noise the notes' kinked penalties still defeat the solve on up to 46 of 14400 rows, which then end with rows
-    // that give way. It should be none.
-    EXPECT_LE(std::ssize(soft.fallback) + std::ssize(soft.best_effort), 60) << soft.fallback.size() << ", " << soft.best_effort.size();
+    EXPECT_TRUE(soft.fallback.empty()) << soft.fallback.size() << " rows, the first is " << soft.fallback.front();
+    EXPECT_TRUE(soft.best_effort.empty()) << soft.best_effort.size() << " rows, the first is " << soft.best_effort.front();
   }
 }
 
@@ -123,8 +122,7 @@ TEST(ColdStart, EveryWrenchIsMet) {
       for (const RandomRow& row : random_rows(vehicle, 10000, 21)) wrenches.push_back(row.wrench);
       const AllocationRun run = run_newton(vehicle, wrenches, true);
       EXPECT_TRUE(run.fallback.empty()) << run.fallback.size() << " rows, the first is " << run.fallback.front();
-      // A known shortfall with the notes' penalties alone: 44 of 10000 rows of momav-bench end with rows that give way. It should be none.
-      EXPECT_LE(std::ssize(run.best_effort), hard ? 0 : 60) << run.best_effort.size() << " rows, the first is " << run.best_effort.front();
+      EXPECT_TRUE(run.best_effort.empty()) << run.best_effort.size() << " rows, the first is " << run.best_effort.front();
       if (hard) {
         EXPECT_LE(run.worst_error, 1e-6);
       }

@@ -191,5 +191,14 @@ TEST_F(CommandLine, ListsSolvesChecksComparesAndFits) {
   EXPECT_NE(run("bench allocation/linear --json").out.find("\"median_s\""), std::string::npos);
 }
 
+TEST_F(CommandLine, AVehicleIsComparedOnRandomRows) {
+  const Ended compared = run("compare momav --rows 3 --seed 2 --solvers newton-kkt,newton-kkt-sparse");
+  EXPECT_EQ(compared.code, 0) << compared.err;
+  EXPECT_TRUE(compared.out.starts_with("momav: 3 random rows, seed 2; soft limits, start from the linear solution\n")) << compared.out;
+  EXPECT_NE(compared.out.find("newton-kkt-sparse"), std::string::npos);
+  const Ended again = run("compare momav --rows 3 --seed 2 --solvers newton-kkt,newton-kkt-sparse --json");
+  EXPECT_NE(again.out.find("\"rows\": 3"), std::string::npos) << again.out;
+}
+
 }  // namespace
 }  // namespace tenon

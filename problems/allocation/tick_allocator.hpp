@@ -40,8 +40,8 @@ class TickAllocator final : public Allocator {
   TickAllocator(const Vehicle& vehicle, const Options& options, Make&& make)
       : linear_(vehicle),
         problem_(vehicle),
-        solver_(make(std::as_const(problem_), with_warm_start(options, true))),
-        rescue_(make(std::as_const(problem_), with_warm_start(options, false))),
+        solver_(make(std::as_const(problem_), with_warm_start(options, true, kMaxWarmIterations))),
+        rescue_(make(std::as_const(problem_), with_warm_start(options, false, kMaxIterations))),
         hard_limits_(vehicle.hard_limits) {
     for (int i = 0; i < N; ++i) {
       const Rotor& rotor = vehicle.rotors[std::size_t(i)];
@@ -68,11 +68,13 @@ class TickAllocator final : public Allocator {
   void fail_rotor(int i) override {
     linear_.fail_rotor(i);
     problem_.fail_rotor(i);
+    throttle_lower_[i] = throttle_upper_[i] = 0;
   }
 
   void stick_servo(int i) override {
     linear_.stick_servo(i, previous_[i]);
     problem_.stick_servo(i, previous_[i]);
+    angle_lower_[i] = angle_upper_[i] = previous_[i];
   }
 
   const Allocation& allocate(const Wrench& wrench, double dt) override {
@@ -92,10 +94,10 @@ class TickAllocator final : public Allocator {
   }
 
  private:
-  static Options with_warm_start(Options options, bool warm) {
+  static Options with_warm_start(Options options, bool warm, int max_iterations) {
     options.warm_start = warm;
     options.min_iterations = 1;  // a command is never a mere prediction
-    options.max_iterations = std::min(options.max_iterations, warm ? kMaxWarmIterations : kMaxIterations);
+    options.max_iterations = std::min(options.max_iterations, max_iterations);
     return options;
   }
 
@@ -106,8 +108,8 @@ class TickAllocator final : public Allocator {
     predict();
     if (attempt(solver_)) return settle(wrench);
 
-    // A wrench out of reach: the same stiffness relative to the effort, but scaled so that the wrench error is what is minimised, and from
-    // a start that trusts no guess.
+    // A wrench out of reach: scaled so that the wrench error is what is minimised and the effort a faint addition, and from a start that
+    // trusts no guess.
     problem_.set_wrench_stiffness(1);
     problem_.set_effort_scale(kFaintEffort);
     start_at_branch(wrench, dt);
@@ -149,8 +151,9 @@ class TickAllocator final : public Allocator {
   /// Rows that give way a little because the multipliers differ from their preload are made exact: the preload follows.
   bool settle(const Wrench& wrench) {
     for (int k = 0; k < kMaxSettlings && !met(wrench) && nearly_met(); ++k) {
+      const double before = out_.error.template lpNorm<Eigen::Infinity>();
       problem_.set_preload(point_.lambda);
-      if (!attempt(solver_)) break;
+      if (!attempt(solver_) || out_.error.template lpNorm<Eigen::Infinity>() > kSettling * before) break;
     }
     return judge(wrench);
   }
@@ -173,6 +176,13 @@ class TickAllocator final : public Allocator {
     linear_.solve(wrench, previous_, u_linear_, a_linear_);
     start_at_linear(wrench);
     if (attempt(solver_)) return judge(wrench);
+    // many kinks of the penalties in the way: with patience, and from several angles between the linear solution's and the tick before's
+    for (const double back : {0.0, 0.5, 1.0, 0.25, 0.75}) {
+      if (back > 0 && !has_previous_) break;
+      start_at_linear(wrench);
+      point_.x.template tail<N>() += back * (previous_ - a_linear_);
+      if (attempt(rescue_)) return judge(wrench);
+    }
     // a vehicle that cannot make every wrench, or a singular pose: rows that may give way
     problem_.set_wrench_stiffness(1 / kFaintEffort);
     problem_.set_preload(Wrench::Zero());
@@ -228,6 +238,7 @@ class TickAllocator final : public Allocator {
     }
     out_.angle = out_.angle.array().max(angle_lower_).min(angle_upper_).matrix();
     out_.error = linear_.wrench(out_.throttle, out_.angle) - wrench;
+    out_.objective = problem_.throttle_weight() * out_.throttle.squaredNorm();  // the effort alone
     out_.residual = kInfinity<double>;
     point_.lambda = problem_.throttle_weight() * linear_.effort_multipliers(wrench);
   }
@@ -235,6 +246,7 @@ class TickAllocator final : public Allocator {
   static constexpr int kMaxIterations = 60;
   static constexpr int kMaxWarmIterations = 14;
   static constexpr int kMaxSettlings = 3;
+  static constexpr double kSettling = 0.1;           // what is out of reach does not settle
   static constexpr double kStiffness = 1e6;          // an attainable wrench gives way by 1e-6 times the change of the multipliers
   static constexpr double kFaintEffort = 1e-4;       // per unit of weighted squared wrench error
   static constexpr double kMetRelative = 1e-8;

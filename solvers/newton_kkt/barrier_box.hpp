@@ -1,9 +1,10 @@
-// The box l <= v <= u of a vector, seen by the barrier: slack distances, multipliers, and what both add to the Newton system.
+// The box l <= v <= u of a vector, seen by the barrier from the point where it stands: distances, multipliers, and what both add to the
+// Newton system.
 //
 //     barrier gradient   -mu/(v - l) + mu/(u - v)            stiffness   Sigma = z_l/(v - l) + z_u/(u - v)
 //
-// An absent bound is infinite and every quotient with it is 0, so no case is told apart in the loops. An entry with l == u is fixed: it
-// has no barrier and a stiffness of 1e30, which keeps its step at 0 without changing any structure.
+// The distances and their reciprocals are taken once for each point; both are 0 for an absent bound, so that no case is told apart in the
+// loops. An entry with l == u is fixed: it has no barrier and a stiffness of 1e30, which keeps its step at 0 without changing any structure.
 #pragma once
 
 #include <algorithm>
@@ -15,9 +16,9 @@ namespace tenon {
 
 inline constexpr double kFixedStiffness = 1e30;
 
-/// Multipliers of the two sides of a box, both >= 0.
+/// A value for each of the two sides of a box: its multipliers (both >= 0), or its barrier parameters.
 template <class Scalar, int Dim>
-struct BoxMultipliers {
+struct BoxSides {
   Eigen::Array<Scalar, Dim, 1> lower, upper;
 };
 
@@ -25,9 +26,11 @@ template <class Scalar, int Dim>
 class BarrierBox {
  public:
   using Array = Eigen::Array<Scalar, Dim, 1>;
-  using Multipliers = BoxMultipliers<Scalar, Dim>;
+  using Sides = BoxSides<Scalar, Dim>;
 
-  explicit BarrierBox(int size) : lower_(size), upper_(size), lowest_(size), highest_(size), fixed_(size), free_(size) {}
+  explicit BarrierBox(int size) : lower_(size), upper_(size), lowest_(size), highest_(size), fixed_(size), free_(size) {
+    for (Sides* sides : {&distance_, &reciprocal_}) sides->lower.setZero(size), sides->upper.setZero(size);
+  }
 
   /// Takes the bounds and moves v to fixed values.
   void set(const auto& lower, const auto& upper, auto&& v) {
@@ -50,9 +53,10 @@ class BarrierBox {
   /// Number of finite sides; 0 means that there is no barrier at all.
   int sides() const { return sides_; }
   bool any_fixed() const { return any_fixed_; }
-  bool is_fixed(Eigen::Index i) const { return fixed_[i] > 0; }
   const Array& fixed_stiffness() const { return fixed_; }
   const Array& free_mask() const { return free_; }  // 0 where fixed, else 1
+
+  // --- points -------------------------------------------------------------------------------------------------------------------------------
 
   /// Undoes what rounding may do to a step up to the boundary: every distance stays positive.
   void keep_inside(auto&& v) const {
@@ -69,44 +73,6 @@ class BarrierBox {
       if (std::isfinite(lower_[i]) && v[i] < lowest) v[i] = lowest;
       if (std::isfinite(upper_[i]) && v[i] > highest) v[i] = highest;
     }
-  }
-
-  /// All multipliers of finite sides = value.
-  void fill(Multipliers& z, Scalar value) const {
-    z.lower = (lower_ > -kInfinity<Scalar>).select(Array::Constant(lower_.size(), value), Scalar(0));
-    z.upper = (upper_ < kInfinity<Scalar>).select(Array::Constant(upper_.size(), value), Scalar(0));
-  }
-
-  /// Multipliers of a warm start: the given signed ones, and at least mu / distance, so that no product lies below mu.
-  void split(const auto& v, const auto& signed_multiplier, Scalar mu, Multipliers& z) const {
-    z.lower = (-signed_multiplier).max(mu / (v - lower_));
-    z.upper = signed_multiplier.max(mu / (upper_ - v));
-    z.lower = (lower_ > -kInfinity<Scalar>).select(z.lower, Scalar(0));
-    z.upper = (upper_ < kInfinity<Scalar>).select(z.upper, Scalar(0));
-  }
-
-  /// Multipliers on the central path: every product = mu.
-  void centre(const auto& v, Scalar mu, Multipliers& z) const {
-    if (sides_ == 0) return;
-    z.lower = mu / (v - lower_);
-    z.upper = mu / (upper_ - v);
-  }
-
-  /// Sigma, the fixed entries' stiffness included.
-  void stiffness(const auto& v, const Multipliers& z, auto&& sigma) const {
-    if (sides_ == 0) sigma = fixed_;
-    else sigma = z.lower / (v - lower_) + z.upper / (upper_ - v) + fixed_;
-  }
-
-  /// gradient += -mu/(v - l) + mu/(u - v)
-  void add_barrier_gradient(const auto& v, Scalar mu, auto&& gradient) const {
-    if (sides_ > 0) gradient += mu / (upper_ - v) - mu / (v - lower_);
-  }
-
-  /// Derivative of -mu (sum of logarithms) along dv.
-  Scalar barrier_slope(const auto& v, const auto& dv, Scalar mu) const {
-    if (sides_ == 0) return 0;
-    return mu * (dv / (upper_ - v) - dv / (v - lower_)).sum();
   }
 
   /// sum of log(v - l) + log(u - v). One logarithm for many factors: they are multiplied up while the product stays in range.
@@ -127,22 +93,116 @@ class BarrierBox {
     return sum + std::log(product);
   }
 
-  /// dz of both sides for the step dv:  dz_l = mu/(v-l) - z_l - z_l/(v-l) dv,   dz_u = mu/(u-v) - z_u + z_u/(u-v) dv.
-  void multiplier_step(const auto& v, const Multipliers& z, const auto& dv, Scalar mu, Multipliers& dz) const {
+  /// From here on the box is seen from v, which is inside.
+  void stand_at(const auto& v) {
     if (sides_ == 0) return;
-    dz.lower = (mu - z.lower * dv) / (v - lower_) - z.lower;
-    dz.upper = (mu + z.upper * dv) / (upper_ - v) - z.upper;
+    reciprocal_.lower = 1 / (v - lower_);
+    reciprocal_.upper = 1 / (upper_ - v);
+    distance_.lower = (lower_ > -kInfinity<Scalar>).select(v - lower_, Scalar(0));
+    distance_.upper = (upper_ < kInfinity<Scalar>).select(upper_ - v, Scalar(0));
+  }
+
+  // --- multipliers --------------------------------------------------------------------------------------------------------------------------
+
+  /// All multipliers of finite sides = value.
+  void fill(Sides& z, Scalar value) const {
+    z.lower = (lower_ > -kInfinity<Scalar>).select(Array::Constant(lower_.size(), value), Scalar(0));
+    z.upper = (upper_ < kInfinity<Scalar>).select(Array::Constant(upper_.size(), value), Scalar(0));
+  }
+
+  /// Multipliers of a warm start: the given signed ones, and at least mu / distance, so that no product lies below mu.
+  void split(const auto& signed_multiplier, Scalar mu, Sides& z) const {
+    z.lower = (lower_ > -kInfinity<Scalar>).select((-signed_multiplier).max(mu * reciprocal_.lower), Scalar(0));
+    z.upper = (upper_ < kInfinity<Scalar>).select(signed_multiplier.max(mu * reciprocal_.upper), Scalar(0));
+  }
+
+  /// Multipliers on the central path: every product = mu.
+  void centre(Scalar mu, Sides& z) const {
+    if (sides_ == 0) return;
+    z.lower = mu * reciprocal_.lower;
+    z.upper = mu * reciprocal_.upper;
+  }
+
+  /// Keeps every product within [mu/kappa, kappa mu], kappa = 1e10.  [WB06, eq. 16]
+  void safeguard(Scalar mu, Sides& z) const {
+    if (sides_ == 0) return;
+    const Scalar kappa = Scalar(1e10);
+    z.lower = z.lower.min(kappa * mu * reciprocal_.lower).max(mu / kappa * reciprocal_.lower);
+    z.upper = z.upper.min(kappa * mu * reciprocal_.upper).max(mu / kappa * reciprocal_.upper);
+  }
+
+  /// Largest |product - mu|.
+  Scalar complementarity(const Sides& z, Scalar mu) const {
+    Scalar largest = 0;
+    if (sides_ == 0) return largest;
+    for (Eigen::Index i = 0; i < lower_.size(); ++i) {
+      if (lower_[i] > -kInfinity<Scalar>) largest = std::max(largest, std::abs(z.lower[i] * distance_.lower[i] - mu));
+      if (upper_[i] < kInfinity<Scalar>) largest = std::max(largest, std::abs(z.upper[i] * distance_.upper[i] - mu));
+    }
+    return largest;
+  }
+
+  Scalar sum_of_products(const Sides& z) const {
+    if (sides_ == 0) return 0;
+    return (z.lower * distance_.lower + z.upper * distance_.upper).sum();
+  }
+
+  /// The same after a step of length alpha in v and beta in z.
+  Scalar sum_of_products_after(const Sides& z, const auto& dv, Scalar alpha, const Sides& dz, Scalar beta) const {
+    if (sides_ == 0) return 0;
+    // an absent side has z = dz = 0
+    return ((distance_.lower + alpha * dv) * (z.lower + beta * dz.lower) + (distance_.upper - alpha * dv) * (z.upper + beta * dz.upper)).sum();
+  }
+
+  // --- the Newton system --------------------------------------------------------------------------------------------------------------------
+
+  /// Sigma, the fixed entries' stiffness included.
+  void stiffness(const Sides& z, auto&& sigma) const {
+    if (sides_ == 0) sigma = fixed_;
+    else sigma = z.lower * reciprocal_.lower + z.upper * reciprocal_.upper + fixed_;
+  }
+
+  /// gradient += -t_l/(v - l) + t_u/(u - v),  t the product that each side aims at: mu, or corrected().
+  void add_barrier_gradient(const Sides& t, auto&& gradient) const {
+    if (sides_ > 0) gradient += t.upper * reciprocal_.upper - t.lower * reciprocal_.lower;
+  }
+
+  /// t = mu
+  void aim_at(Scalar mu, Sides& t) const {
+    if (sides_ == 0) return;
+    t.lower.setConstant(lower_.size(), mu);
+    t.upper.setConstant(upper_.size(), mu);
+  }
+
+  /// t = mu - dv dz of the affine step: what its own second-order term leaves is aimed off in advance.  [Meh92]
+  void aim_off(Scalar mu, const auto& dv, const Sides& dz, Sides& t) const {
+    if (sides_ == 0) return;
+    t.lower = mu - dv * dz.lower;
+    t.upper = mu + dv * dz.upper;
+  }
+
+  /// Derivative of -mu (sum of logarithms) along dv.
+  Scalar barrier_slope(const auto& dv, Scalar mu) const {
+    if (sides_ == 0) return 0;
+    return mu * (dv * (reciprocal_.upper - reciprocal_.lower)).sum();
+  }
+
+  /// dz of both sides for the step dv:  dz_l = t_l/(v-l) - z_l - z_l/(v-l) dv,   dz_u = t_u/(u-v) - z_u + z_u/(u-v) dv.
+  void multiplier_step(const Sides& z, const auto& dv, const Sides& t, Sides& dz) const {
+    if (sides_ == 0) return;
+    dz.lower = (t.lower - z.lower * dv) * reciprocal_.lower - z.lower;
+    dz.upper = (t.upper + z.upper * dv) * reciprocal_.upper - z.upper;
   }
 
   /// Fraction to the boundary: the largest a in (0, 1] with v + a dv at least (1 - tau) of its distance away from every bound.
-  Scalar max_step(const auto& v, const auto& dv, Scalar tau) const {
+  Scalar max_step(const auto& dv, Scalar tau) const {
     if (sides_ == 0) return 1;
     // a (-dv) <= tau (v - l)  and  a dv <= tau (u - v):  1/a is the largest quotient
-    const Scalar inverse = (dv / (upper_ - v)).max(-dv / (v - lower_)).maxCoeff();
+    const Scalar inverse = (dv * reciprocal_.upper).max(-dv * reciprocal_.lower).maxCoeff();
     return inverse > tau ? tau / inverse : Scalar(1);
   }
 
-  Scalar max_multiplier_step(const Multipliers& z, const Multipliers& dz, Scalar tau) const {
+  Scalar max_multiplier_step(const Sides& z, const Sides& dz, Scalar tau) const {
     if (sides_ == 0) return 1;
     Scalar inverse = tau;
     for (Eigen::Index i = 0; i < z.lower.size(); ++i) {
@@ -152,42 +212,6 @@ class BarrierBox {
     return inverse > tau ? tau / inverse : Scalar(1);
   }
 
-  /// Keeps every product within [mu/kappa, kappa mu], kappa = 1e10.  [WB06, eq. 16]
-  void safeguard(const auto& v, Scalar mu, Multipliers& z) const {
-    if (sides_ == 0) return;
-    const Scalar kappa = Scalar(1e10);
-    z.lower = z.lower.min(kappa * mu / (v - lower_)).max(mu / (kappa * (v - lower_)));
-    z.upper = z.upper.min(kappa * mu / (upper_ - v)).max(mu / (kappa * (upper_ - v)));
-  }
-
-  /// Largest |product - mu|.
-  Scalar complementarity(const auto& v, const Multipliers& z, Scalar mu) const {
-    Scalar largest = 0;
-    if (sides_ == 0) return largest;
-    for (Eigen::Index i = 0; i < v.size(); ++i) {
-      if (lower_[i] > -kInfinity<Scalar>) largest = std::max(largest, std::abs(z.lower[i] * (v[i] - lower_[i]) - mu));
-      if (upper_[i] < kInfinity<Scalar>) largest = std::max(largest, std::abs(z.upper[i] * (upper_[i] - v[i]) - mu));
-    }
-    return largest;
-  }
-
-  struct Products {
-    Scalar sum = 0, smallest = kInfinity<Scalar>;
-  };
-  Products products(const auto& v, const Multipliers& z) const {
-    Products out;
-    if (sides_ == 0) return out;
-    const auto add = [&](Scalar product) {
-      out.sum += product;
-      out.smallest = std::min(out.smallest, product);
-    };
-    for (Eigen::Index i = 0; i < v.size(); ++i) {
-      if (lower_[i] > -kInfinity<Scalar>) add(z.lower[i] * (v[i] - lower_[i]));
-      if (upper_[i] < kInfinity<Scalar>) add(z.upper[i] * (upper_[i] - v[i]));
-    }
-    return out;
-  }
-
  private:
   static constexpr double kSmallest = sizeof(Scalar) == 8 ? 1e-250 : 1e-30;
   static constexpr double kLargest = sizeof(Scalar) == 8 ? 1e250 : 1e30;
@@ -195,9 +219,10 @@ class BarrierBox {
   static Scalar margin(Scalar bound) { return 4 * std::numeric_limits<Scalar>::epsilon() * std::max(Scalar(1), std::abs(bound)); }
 
   Array lower_, upper_;
-  Array lowest_, highest_;  // the same, a few units of rounding inside
-  Array fixed_;  // 0, or kFixedStiffness
-  Array free_;   // 1, or 0
+  Array lowest_, highest_;       // the same, a few units of rounding inside
+  Array fixed_;                  // 0, or kFixedStiffness
+  Array free_;                   // 1, or 0
+  Sides distance_, reciprocal_;  // of the point where the box is seen from; 0 where there is no bound
   int sides_ = 0;
   bool any_fixed_ = false;
 };

@@ -23,6 +23,14 @@ struct BarrierError {
   Scalar max_scaled() const { return std::max({stationarity / scale, primal, complementarity / scale}); }
 };
 
+/// How far x, s and lambda go, and how far the bound multipliers.
+template <class Scalar>
+struct StepLengths {
+  Scalar primal = 0, dual = 0;
+
+  Scalar min() const { return std::min(primal, dual); }
+};
+
 template <NonlinearProgram P>
 class BarrierProblem {
  public:
@@ -91,8 +99,10 @@ class BarrierProblem {
   /// Brings the shared workspace back to `at` after trial points elsewhere.
   void return_to(const Iterate<P>& at) { problem_.prepare(at.x, workspace_); }
 
-  /// Gradient, Jacobian and grad f + J' lambda at `at`, where evaluate() was last called. False where a value is not finite.
+  /// Gradient, Jacobian, grad f + J' lambda and the boxes at `at`, where evaluate() was last called. False where a value is not finite.
   bool linearise(const Iterate<P>& at) {
+    x_box_.stand_at(at.x.array());
+    s_box_.stand_at(at.s.array());
     problem_.gradient(at.x, workspace_, gradient_);
     problem_.jacobian(at.x, workspace_, values_of(jacobian_));
     update_stationarity(at);
@@ -120,7 +130,7 @@ class BarrierProblem {
 
   /// Derivative of phi along (dx, ds) where the rows keep giving way: grad f' dx + lambda' (J dx - ds) + barrier.
   Scalar give_way_slope(const Iterate<P>& at, const Step<P>& step, Scalar mu) const {
-    return gradient_.dot(step.x) + (jacobian_ * step.x - step.s).dot(at.lambda) + logarithms_slope(at, step, mu);
+    return gradient_.dot(step.x) + (jacobian_ * step.x - step.s).dot(at.lambda) + logarithms_slope(step, mu);
   }
 
   /// theta = |r_c|_1
@@ -147,7 +157,7 @@ class BarrierProblem {
   Scalar barrier_slope(const Iterate<P>& at, const Step<P>& step, Scalar mu) const {
     Scalar slope = gradient_.dot(step.x);
     if (compliant_) slope += (compliance_.array() * at.lambda.array() * step.lambda.array()).sum();
-    return slope + logarithms_slope(at, step, mu);
+    return slope + logarithms_slope(step, mu);
   }
 
   /// How far the linearised iterate is from solving the barrier problem of this mu (mu = 0: the problem itself).
@@ -164,22 +174,47 @@ class BarrierProblem {
     if (sides() > 0) {
       multipliers += (at.zx.upper + at.zx.lower).sum();
       out.complementarity =
-          std::max(x_box_.complementarity(at.x.array(), at.zx, mu), s_box_.complementarity(at.s.array(), at.zs, mu));
+          std::max(x_box_.complementarity(at.zx, mu), s_box_.complementarity(at.zs, mu));
     }
     constexpr Scalar kMultiplierScale = 100;
     out.scale = std::max(kMultiplierScale, multipliers / Scalar(std::max(1, n_ + m_))) / kMultiplierScale;
     return out;
   }
 
-  /// Mean product of multipliers and distances; 0 without bounds.
+  /// Mean product of multipliers and distances at the linearised iterate; 0 without bounds.
   Scalar mean_complementarity(const Iterate<P>& at) const {
     if (sides() == 0) return 0;
-    return (x_box_.products(at.x.array(), at.zx).sum + s_box_.products(at.s.array(), at.zs).sum) / Scalar(sides());
+    return (x_box_.sum_of_products(at.zx) + s_box_.sum_of_products(at.zs)) / Scalar(sides());
+  }
+
+  /// The same after a step of these lengths.
+  Scalar mean_complementarity_after(const Iterate<P>& at, const Step<P>& step, StepLengths<Scalar> alpha) const {
+    return (x_box_.sum_of_products_after(at.zx, step.x.array(), alpha.primal, step.zx, alpha.dual) +
+            s_box_.sum_of_products_after(at.zs, step.s.array(), alpha.primal, step.zs, alpha.dual)) / Scalar(sides());
+  }
+
+  /// Fraction to the boundary, from the linearised iterate.
+  Scalar max_primal_step(const Step<P>& step, Scalar tau) const {
+    return std::min(x_box_.max_step(step.x.array(), tau), s_box_.max_step(step.s.array(), tau));
+  }
+  Scalar max_dual_step(const Iterate<P>& at, const Step<P>& step, Scalar tau) const {
+    return std::min(x_box_.max_multiplier_step(at.zx, step.zx, tau), s_box_.max_multiplier_step(at.zs, step.zs, tau));
+  }
+  StepLengths<Scalar> max_steps(const Iterate<P>& at, const Step<P>& step, Scalar tau) const {
+    return {max_primal_step(step, tau), max_dual_step(at, step, tau)};
+  }
+
+  /// Multipliers on the central path of mu.
+  void centre(Scalar mu, Iterate<P>& at) const {
+    x_box_.centre(mu, at.zx);
+    s_box_.centre(mu, at.zs);
   }
 
  private:
-  Scalar logarithms_slope(const Iterate<P>& at, const Step<P>& step, Scalar mu) const {
-    return x_box_.barrier_slope(at.x.array(), step.x.array(), mu) + s_box_.barrier_slope(at.s.array(), step.s.array(), mu);
+  static constexpr Scalar kSoftness = 1000;
+
+  Scalar logarithms_slope(const Step<P>& step, Scalar mu) const {
+    return x_box_.barrier_slope(step.x.array(), mu) + s_box_.barrier_slope(step.s.array(), mu);
   }
 
   static JacobianOf<P> zero_jacobian(const P& problem) {
@@ -197,8 +232,6 @@ class BarrierProblem {
   BoundsOf<P> bounds_;
   BarrierBox<Scalar, P::kVariables> x_box_;
   BarrierBox<Scalar, P::kConstraints> s_box_;
-  static constexpr Scalar kSoftness = 1000;
-
   VectorM compliance_;
   bool compliant_ = false, all_compliant_ = false;
   VectorN gradient_, stationarity_;

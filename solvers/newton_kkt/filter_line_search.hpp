@@ -33,22 +33,25 @@ class FilterLineSearch {
   /// Whether the last step taken is a second-order correction, whose multiplier steps are its own.
   bool corrected() const { return corrected_last_; }
 
-  /// Looks for an acceptable `trial` = now + alpha step, alpha <= alpha_max; `step` becomes the one taken, and `barrier` is linearised there.
-  /// False where there is none.
-  bool search(BarrierProblem<P>& barrier, NewtonSystem<P, Kkt>& system, const Iterate<P>& now, Step<P>& step, Scalar alpha_max,
-              Scalar alpha_dual, Scalar tau, Scalar mu, Iterate<P>& trial) {
+  /// Whether the step at full length alpha_max leads to an acceptable `trial`.
+  bool try_full(BarrierProblem<P>& barrier, const Iterate<P>& now, const Step<P>& step, Scalar alpha_max, Scalar alpha_dual, Scalar mu,
+                Iterate<P>& trial) {
     theta_ = barrier.violation(now);
     phi_ = barrier.barrier_objective(now, mu);
     slope_ = barrier.barrier_slope(now, step, mu);
     trials_ = 0;
-
     corrected_last_ = false;
     alpha_ = alpha_max;
     if (try_point(barrier, now, step, mu, trial)) return true;
-    if (trial_finite_) {
-      if (error_falls(barrier, now, step, alpha_dual, mu, trial)) return true;
-      if (trial_theta_ >= theta_ && correct(barrier, system, now, step, tau, mu, trial)) return true;
-    }
+    return trial_finite_ && error_falls(barrier, now, step, alpha_dual, mu, trial);
+  }
+
+  /// Looks for an acceptable `trial` = now + alpha step, alpha <= alpha_max; `step` becomes the one taken, and `barrier` is linearised there.
+  /// False where there is none.
+  bool search(BarrierProblem<P>& barrier, NewtonSystem<P, Kkt>& system, const Iterate<P>& now, Step<P>& step, Scalar alpha_max,
+              Scalar alpha_dual, Scalar tau, Scalar mu, Iterate<P>& trial) {
+    if (try_full(barrier, now, step, alpha_max, alpha_dual, mu, trial)) return true;
+    if (trial_finite_ && trial_theta_ >= theta_ && correct(barrier, system, now, step, tau, mu, trial)) return true;
     const Scalar alpha_min = smallest_step();
     while ((alpha_ /= 2) >= alpha_min) {
       if (try_point(barrier, now, step, mu, trial)) return true;
@@ -57,8 +60,9 @@ class FilterLineSearch {
   }
 
  private:
-  static constexpr Scalar kGammaTheta = Scalar(1e-5), kGammaPhi = Scalar(1e-8), kDelta = 1, 
-                          kEtaPhi = Scalar(1e-8), kGammaAlpha = Scalar(0.05), kKappaSoc = Scalar(0.99), kErrorFall = Scalar(0.9), kNearSolution = Scalar(1e-2);
+  static constexpr Scalar kGammaTheta = Scalar(1e-5), kGammaPhi = Scalar(1e-8), kEtaPhi = Scalar(1e-8), kDelta = 1;
+  static constexpr Scalar kGammaAlpha = Scalar(0.05), kKappaSoc = Scalar(0.99);
+  static constexpr Scalar kErrorFall = Scalar(0.9), kNearSolution = Scalar(1e-2);
   static constexpr int kMaxCorrections = 4;
 
   void move(const BarrierProblem<P>& barrier, const Iterate<P>& now, const Step<P>& step, Iterate<P>& trial) const {
@@ -141,9 +145,8 @@ class FilterLineSearch {
     Scalar theta_before = theta_;
     soc_residual_ = alpha_ * barrier.row_residual(now) + barrier.row_residual(trial);
     for (int k = 0; k < kMaxCorrections; ++k) {
-      system.corrected_step(barrier, now, mu, soc_residual_, corrected_);
-      alpha_ = std::min(barrier.x_box().max_step(now.x.array(), corrected_.x.array(), tau),
-                        barrier.s_box().max_step(now.s.array(), corrected_.s.array(), tau));
+      system.corrected_step(barrier, now, soc_residual_, corrected_);
+      alpha_ = barrier.max_primal_step(corrected_, tau);
       if (try_point(barrier, now, corrected_, mu, trial)) {
         std::swap(step, corrected_);
         corrected_last_ = true;

@@ -6,37 +6,16 @@
 
 namespace tenon {
 
+/// What the Newton system is about: variables, slacks, and their multipliers.
 template <class P>
-struct Iterate {
+struct Step {
   using Scalar = typename P::Scalar;
 
   VectorNOf<P> x;       // n
   VectorMOf<P> s;       // m: slack of each row
   VectorMOf<P> lambda;  // m
-  BoxMultipliers<Scalar, P::kVariables> zx;
-  BoxMultipliers<Scalar, P::kConstraints> zs;
-  Scalar objective = 0;
-  VectorMOf<P> constraints;  // m: c(x)
-
-  Iterate(int n, int m) {
-    x.setZero(n);
-    s.setZero(m);
-    lambda.setZero(m);
-    constraints.setZero(m);
-    zx.lower.setZero(n), zx.upper.setZero(n);
-    zs.lower.setZero(m), zs.upper.setZero(m);
-  }
-};
-
-template <class P>
-struct Step {
-  using Scalar = typename P::Scalar;
-
-  VectorNOf<P> x;
-  VectorMOf<P> s;
-  VectorMOf<P> lambda;
-  BoxMultipliers<Scalar, P::kVariables> zx;
-  BoxMultipliers<Scalar, P::kConstraints> zs;
+  BoxSides<Scalar, P::kVariables> zx;
+  BoxSides<Scalar, P::kConstraints> zs;
 
   Step(int n, int m) {
     x.setZero(n);
@@ -45,6 +24,14 @@ struct Step {
     zx.lower.setZero(n), zx.upper.setZero(n);
     zs.lower.setZero(m), zs.upper.setZero(m);
   }
+};
+
+template <class P>
+struct Iterate : Step<P> {
+  typename P::Scalar objective = 0;
+  VectorMOf<P> constraints;  // m: c(x)
+
+  Iterate(int n, int m) : Step<P>(n, m) { constraints.setZero(m); }
 };
 
 /// Bound multipliers of `to` = those of `from` + alpha times the step's.

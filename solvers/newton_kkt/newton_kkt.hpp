@@ -14,6 +14,7 @@
 #include "tenon/core/result.hpp"
 #include "tenon/solvers/newton_kkt/barrier_parameter.hpp"
 #include "tenon/solvers/newton_kkt/filter_line_search.hpp"
+#include "tenon/solvers/newton_kkt/starts.hpp"
 
 namespace tenon {
 
@@ -39,8 +40,7 @@ class NewtonKkt {
 
   /// Allocates all that a solve needs. The problem must outlive this; its bounds are asked for at every solve.
   explicit NewtonKkt(const P& problem, Options options = {})
-      : problem_(problem),
-        options_(std::move(options)),
+      : options_(std::move(options)),
         barrier_(problem),
         system_(problem),
         restoration_(problem, options_),
@@ -74,7 +74,7 @@ class NewtonKkt {
       }
       compute_step();
       if (warm_start_hits_a_wall()) {
-        recentre();
+        start_again_from_inside();
         continue;
       }
       if (search()) accept();
@@ -96,41 +96,28 @@ class NewtonKkt {
     now_->lambda = point.lambda;
     iterations_ = tiny_steps_ = 0;
     trust_guess_ = options_.warm_start;
-    alpha_primal_ = alpha_dual_ = 0;
+    alpha_ = {};
     system_.reset();
     barrier_.take_bounds(*now_);
 
-    const Scalar push = options_.warm_start ? kWarmPush : kColdPush;
-    barrier_.x_box().push_inside(now_->x.array(), push, push);
-    if (!barrier_.evaluate(*now_)) return Status::invalid_start;
-    set_slacks(push);
-    if (!barrier_.linearise(*now_)) return Status::invalid_start;
-    if (options_.warm_start) warm_multipliers(point);
-    else cold_multipliers();
+    const bool warm = options_.warm_start;
+    if (!begin_inside(barrier_, warm ? kWarmPush<Scalar> : kColdPush<Scalar>, *now_)) return Status::invalid_start;
+    if (warm) begin_warm(point);
+    else begin_cold();
     if (barrier_.sides() == 0) mu_.switch_off();
     barrier_.soften_rows(mu_.at_end() ? 0 : mu_.value());
     line_search_.start(barrier_.violation(*now_));
     return std::nullopt;
   }
 
-  void set_slacks(Scalar push) {
-    const auto& box = barrier_.s_box();
-    now_->s = (box.free_mask() > 0).select(now_->constraints, now_->s);
-    box.push_inside(now_->s.array(), push, push);
-  }
-
-  void cold_multipliers() {
+  void begin_cold() {
     mu_.start(options_.initial_mu > 0 ? Scalar(options_.initial_mu) : BarrierParameter<Scalar>::kInitial, tolerance());
-    barrier_.x_box().fill(now_->zx, 1);
-    barrier_.s_box().fill(now_->zs, 1);
-    if (!system_.least_squares_multipliers(barrier_, *now_)) now_->lambda.setZero();
-    barrier_.update_stationarity(*now_);
+    cold_multipliers(barrier_, system_, *now_);
   }
 
-  void warm_multipliers(const PointOf<P>& point) {
+  void begin_warm(const PointOf<P>& point) {
     mu_.start(Scalar(options_.initial_mu), tolerance());
-    barrier_.x_box().split(now_->x.array(), point.z.array(), mu_.value(), now_->zx);
-    barrier_.s_box().split(now_->s.array(), point.lambda.array(), mu_.value(), now_->zs);
+    warm_multipliers(barrier_, point, mu_.value(), *now_);
     if (options_.initial_mu == 0) mu_.start(std::min(barrier_.mean_complementarity(*now_), BarrierParameter<Scalar>::kInitial), tolerance());
   }
 
@@ -150,14 +137,30 @@ class NewtonKkt {
     return std::nullopt;
   }
 
-  /// The next barrier problem, as soon as this one is solved well enough; several at once where the iterate allows it.
+  /// In free gait mu waits for the step. In monotone gait: the next barrier problem, as soon as this one is solved well enough; several at
+  /// once where the iterate allows it.
   void update_barrier() {
+    if (barrier_.sides() == 0) return;
+    const bool falls = tiny_steps_ == 0 && !(mu_.at_end() && !mu_.is_free()) && mu_.falls(error_.max_scaled());
+    if (mu_.is_free()) {
+      if (!falls) mu_.go_monotone(barrier_.mean_complementarity(*now_));
+      new_barrier_problem();
+      return;
+    }
+    if (falls) {
+      mu_.go_free();
+      return;
+    }
     while (!mu_.at_end() && (mu_.solved(barrier_.error(*now_, mu_.value()).max_scaled()) || tiny_steps_ > 0)) {
       mu_.decrease();
-      barrier_.soften_rows(mu_.at_end() ? 0 : mu_.value());
-      line_search_.reset();
-      tiny_steps_ = 0;
+      new_barrier_problem();
     }
+  }
+
+  void new_barrier_problem() {
+    barrier_.soften_rows(mu_.at_end() ? 0 : mu_.value());
+    line_search_.reset();
+    tiny_steps_ = 0;
   }
 
   bool factor() {
@@ -166,45 +169,51 @@ class NewtonKkt {
   }
 
   void compute_step() {
-    system_.step(barrier_, *now_, mu_.value(), step_);
-    const Scalar tau = mu_.tau();
-    alpha_primal_ = std::min(barrier_.x_box().max_step(now_->x.array(), step_.x.array(), tau),
-                             barrier_.s_box().max_step(now_->s.array(), step_.s.array(), tau));
-    limit_multiplier_step();
+    predicted_ = mu_.is_free() && predict_step();
+    if (!predicted_) system_.step(barrier_, *now_, mu_.value(), step_);
+    alpha_ = barrier_.max_steps(*now_, step_, mu_.tau());
   }
 
-  void limit_multiplier_step() {
-    alpha_dual_ = std::min(barrier_.x_box().max_multiplier_step(now_->zx, step_.zx, mu_.tau()),
-                           barrier_.s_box().max_multiplier_step(now_->zs, step_.zs, mu_.tau()));
+  /// Free gait: mu from the affine step. Where that one goes far and the Hessian needed no help, the step that allows for its second-order
+  /// term is worth taking: true, with the step.
+  bool predict_step() {
+    const Scalar gap = barrier_.mean_complementarity(*now_);
+    if (mu_.has_arrived(gap)) {
+      mu_.choose_smallest();
+      return false;
+    }
+    system_.step(barrier_, *now_, 0, step_);
+    const StepLengths<Scalar> affine = barrier_.max_steps(*now_, step_, 1);
+    mu_.choose(gap, barrier_.mean_complementarity_after(*now_, step_, affine));
+    if (affine.min() < kFar || system_.regularization() > 0) return false;
+    system_.predicted_step(barrier_, *now_, mu_.value(), step_);
+    return true;
   }
 
   /// A warm start has a small mu and a guess of the active bounds. Where a bound that it did not guess cuts the step short, the iterates would
   /// creep along the walls: better to begin again, from this point moved inside, with a barrier worth the name.
   bool warm_start_hits_a_wall() const {
-    return trust_guess_ && std::min(alpha_primal_, alpha_dual_) < kWall && mu_.value() < kRecentre;
+    return trust_guess_ && alpha_.min() < kWall && mu_.value() < kRecentre;
   }
 
-  void recentre() {
+  void start_again_from_inside() {
     trust_guess_ = false;
     ++iterations_;
     mu_.start(kRecentre, tolerance());
-    barrier_.soften_rows(mu_.at_end() ? 0 : mu_.value());
-    trial_->x = now_->x;
-    barrier_.x_box().push_inside(now_->x.array(), kColdPush, kColdPush);
-    if (!barrier_.evaluate(*now_)) {  // the inside cannot be evaluated: stay
-      now_->x = trial_->x;
-      barrier_.evaluate(*now_);
-    }
-    set_slacks(kColdPush);
-    barrier_.x_box().centre(now_->x.array(), mu_.value(), now_->zx);
-    barrier_.s_box().centre(now_->s.array(), mu_.value(), now_->zs);
-    barrier_.linearise(*now_);
+    new_barrier_problem();
+    recentre(barrier_, mu_.value(), *now_, *trial_);
     line_search_.start(barrier_.violation(*now_));
   }
 
+  /// A predicted step need not be one of descent: it is taken at full length or not at all.
   bool search() {
     if (!step_.x.allFinite() || !step_.lambda.allFinite()) return false;
-    return line_search_.search(barrier_, system_, *now_, step_, alpha_primal_, alpha_dual_, mu_.tau(), mu_.value(), *trial_);
+    if (predicted_) {
+      if (line_search_.try_full(barrier_, *now_, step_, alpha_.primal, alpha_.dual, mu_.value(), *trial_)) return true;
+      system_.step(barrier_, *now_, mu_.value(), step_);
+      alpha_ = barrier_.max_steps(*now_, step_, mu_.tau());
+    }
+    return line_search_.search(barrier_, system_, *now_, step_, alpha_.primal, alpha_.dual, mu_.tau(), mu_.value(), *trial_);
   }
 
   /// No acceptable step from here: a point with less violation, or the end.
@@ -220,7 +229,7 @@ class NewtonKkt {
       const auto violation = [&](const VectorN& x) {
         trial_->x = x;
         if (!barrier_.evaluate(*trial_)) return kInfinity<Scalar>;
-        follow_rows(*trial_);
+        follow_rows(barrier_, kColdPush<Scalar>, *trial_);
         return barrier_.hard_violation(*trial_);
       };
       const auto good_enough = [&](const VectorN& x) {
@@ -236,39 +245,20 @@ class NewtonKkt {
         barrier_.linearise(*now_);
         return ended;
       }
-      return go_on_from_restored(ended);
+      if (!begin_at_restored(barrier_, system_, restoration_.x(), mu_.value(), *now_)) return Status::numerical_failure;
+      return ended;
     }
   }
 
-  std::optional<Status> go_on_from_restored(std::optional<Status> ended) {
-    now_->x = restoration_.x();
-    if (!barrier_.evaluate(*now_)) return Status::numerical_failure;
-    follow_rows(*now_);
-    barrier_.x_box().centre(now_->x.array(), mu_.value(), now_->zx);
-    barrier_.s_box().centre(now_->s.array(), mu_.value(), now_->zs);
-    now_->lambda.setZero();
-    barrier_.linearise(*now_);
-    if (!system_.least_squares_multipliers(barrier_, *now_)) now_->lambda.setZero();
-    barrier_.update_stationarity(*now_);
-    return ended;
-  }
-
-  /// Slacks at their rows' values, inside their bounds.
-  void follow_rows(Iterate<P>& at) const {
-    const auto& box = barrier_.s_box();
-    at.s = (box.free_mask() > 0).select(at.constraints, now_->s);
-    box.push_inside(at.s.array(), kColdPush, kColdPush);
-  }
-
   void accept() {
-    alpha_primal_ = line_search_.alpha();
-    if (line_search_.corrected()) limit_multiplier_step();
-    const Scalar largest = (step_.x.array().abs() / (1 + now_->x.array().abs())).maxCoeff() * alpha_primal_;
+    alpha_.primal = line_search_.alpha();
+    if (line_search_.corrected()) alpha_.dual = barrier_.max_dual_step(*now_, step_, mu_.tau());
+    const Scalar largest = (step_.x.array().abs() / (1 + now_->x.array().abs())).maxCoeff() * alpha_.primal;
     tiny_steps_ = largest < 10 * std::numeric_limits<Scalar>::epsilon() ? tiny_steps_ + 1 : 0;
 
-    take_dual_step(*now_, step_, alpha_dual_, *trial_);
-    barrier_.x_box().safeguard(trial_->x.array(), mu_.value(), trial_->zx);
-    barrier_.s_box().safeguard(trial_->s.array(), mu_.value(), trial_->zs);
+    take_dual_step(*now_, step_, alpha_.dual, *trial_);
+    barrier_.x_box().safeguard(mu_.value(), trial_->zx);
+    barrier_.s_box().safeguard(mu_.value(), trial_->zs);
     std::swap(now_, trial_);
     ++iterations_;
   }
@@ -301,19 +291,17 @@ class NewtonKkt {
 
   Iteration describe() const {
     return {iterations_, double(now_->objective), double(error_.primal), double(error_.stationarity), double(error_.complementarity),
-            double(mu_.value()), double(alpha_primal_), double(alpha_dual_), double(system_.regularization()), line_search_.trials()};
+            double(mu_.value()), double(alpha_.primal), double(alpha_.dual), double(system_.regularization()), line_search_.trials()};
   }
 
   Scalar tolerance() const { return Scalar(options_.tolerance); }
   double elapsed() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
 
-  static constexpr Scalar kColdPush = Scalar(1e-2);    // kappa_1 = kappa_2 of [WB06, sec. 3.6]
-  static constexpr Scalar kWarmPush = Scalar(1e-6);
   static constexpr Scalar kWall = Scalar(0.3), kRecentre = Scalar(1e-3);
+  static constexpr Scalar kFar = Scalar(0.3);
   static constexpr Scalar kDivergence = Scalar(1e20);
   static constexpr Scalar kRestored = Scalar(0.9);   // kappa_resto of [WB06, sec. 3.3]
 
-  const P& problem_;
   Options options_;
   BarrierProblem<P> barrier_;
   NewtonSystem<P, Kkt> system_;
@@ -325,10 +313,10 @@ class NewtonKkt {
   Iterate<P>* trial_ = &iterates_[1];
   Step<P> step_;
   BarrierError<Scalar> error_;
-  Scalar alpha_primal_ = 0, alpha_dual_ = 0;
+  StepLengths<Scalar> alpha_;
   typename Clock::time_point begin_;
   int iterations_ = 0, tiny_steps_ = 0;
-  bool stopped_ = false, trust_guess_ = false;
+  bool stopped_ = false, trust_guess_ = false, predicted_ = false;
 };
 
 }  // namespace tenon

@@ -1,9 +1,10 @@
 // The Newton system of the barrier problem: assembled, factored with the right inertia, solved for a step.
 //
 //     [ H + Sigma_x + delta_w I    J'                          ] [ dx      ]       [ r_x             ]
-//     [ J                          -(1/Sigma_s + D + delta_c)  ] [ dlambda ]  =  - [ r_c + r_s/Sigma_s ]        newton_kkt.md (7),
+//     [ J                          -(1/S + D + delta_c)        ] [ dlambda ]  =  - [ r_c + r_s/S ]              newton_kkt.md (7),
 //
-// with r_x = grad f + J' lambda - mu/(x - l) + mu/(u - x), r_s = -lambda - mu/(s - l) + mu/(u - s), ds = (dlambda - r_s)/Sigma_s.
+// with r_x = grad f + J' lambda - mu/(x - l) + mu/(u - x), r_s = -lambda - mu/(s - l) + mu/(u - s), S = Sigma_s + delta_w and
+// ds = (dlambda - r_s)/S.
 #pragma once
 
 #include "tenon/solvers/newton_kkt/barrier_problem.hpp"
@@ -24,6 +25,8 @@ class NewtonSystem {
     const int n = problem.num_variables(), m = problem.num_constraints();
     for (VectorN* v : {&sigma_x_, &r_x_, &rhs_x_}) v->setZero(n);
     for (VectorM* v : {&give_s_, &d_, &r_s_, &r_c_, &rhs_c_}) v->setZero(m);
+    aim_x_.lower.setZero(n), aim_x_.upper.setZero(n);
+    aim_s_.lower.setZero(m), aim_s_.upper.setZero(m);
   }
 
   void reset() {
@@ -50,15 +53,22 @@ class NewtonSystem {
 
   /// The Newton step of the barrier problem of this mu, from the last factorisation.
   void step(const BarrierProblem<P>& barrier, const Iterate<P>& at, Scalar mu, Step<P>& step) {
-    residuals(barrier, at, mu);
-    r_c_ = barrier.row_residual(at);
-    solve(barrier, at, mu, step);
+    barrier.x_box().aim_at(mu, aim_x_);
+    barrier.s_box().aim_at(mu, aim_s_);
+    aimed_step(barrier, at, step);
   }
 
-  /// The same with another row residual: a second-order correction.  [WB06, eq. 26]
-  void corrected_step(const BarrierProblem<P>& barrier, const Iterate<P>& at, Scalar mu, const VectorM& row_residual, Step<P>& step) {
+  /// Mehrotra's corrector: `step` is the affine step and becomes the one that allows for its second-order term.  [Meh92]
+  void predicted_step(const BarrierProblem<P>& barrier, const Iterate<P>& at, Scalar mu, Step<P>& step) {
+    barrier.x_box().aim_off(mu, step.x.array(), step.zx, aim_x_);
+    barrier.s_box().aim_off(mu, step.s.array(), step.zs, aim_s_);
+    aimed_step(barrier, at, step);
+  }
+
+  /// The last step again with another row residual: a second-order correction.  [WB06, eq. 26]
+  void corrected_step(const BarrierProblem<P>& barrier, const Iterate<P>& at, const VectorM& row_residual, Step<P>& step) {
     r_c_ = row_residual;
-    solve(barrier, at, mu, step);
+    solve(barrier, at, step);
   }
 
   /// Least-squares multipliers of a cold start: H = I, every row's slack with unit stiffness.  [WB06, sec. 3.6]
@@ -78,10 +88,10 @@ class NewtonSystem {
  private:
   bool attempt(const BarrierProblem<P>& barrier, const Iterate<P>& at, Scalar delta_w, Scalar delta_c) {
     delta_w_ = delta_w;
-    barrier.x_box().stiffness(at.x.array(), at.zx, sigma_x_.array());
+    barrier.x_box().stiffness(at.zx, sigma_x_.array());
     if (delta_w > 0) sigma_x_.array() += delta_w;
     // 1/Sigma_s: 0 for the fixed slack of an equality, at most 1e30 for a row without bounds
-    barrier.s_box().stiffness(at.s.array(), at.zs, give_s_.array());
+    barrier.s_box().stiffness(at.zs, give_s_.array());
     give_s_.array() = barrier.s_box().free_mask() / (give_s_.array() + delta_w).max(Scalar(1) / Scalar(kFixedStiffness));
     d_ = give_s_ + barrier.compliance();
     if (delta_c > 0) d_.array() += delta_c;
@@ -89,28 +99,32 @@ class NewtonSystem {
     return inertia_.zero == 0 && inertia_.negative == barrier.m();
   }
 
-  void residuals(const BarrierProblem<P>& barrier, const Iterate<P>& at, Scalar mu) {
+  void aimed_step(const BarrierProblem<P>& barrier, const Iterate<P>& at, Step<P>& step) {
     r_x_ = barrier.stationarity();
-    barrier.x_box().add_barrier_gradient(at.x.array(), mu, r_x_.array());
+    barrier.x_box().add_barrier_gradient(aim_x_, r_x_.array());
     if (barrier.x_box().any_fixed()) r_x_.array() *= barrier.x_box().free_mask();
     r_s_ = -at.lambda;
-    barrier.s_box().add_barrier_gradient(at.s.array(), mu, r_s_.array());
+    barrier.s_box().add_barrier_gradient(aim_s_, r_s_.array());
+    r_c_ = barrier.row_residual(at);
+    solve(barrier, at, step);
   }
 
-  void solve(const BarrierProblem<P>& barrier, const Iterate<P>& at, Scalar mu, Step<P>& step) {
+  void solve(const BarrierProblem<P>& barrier, const Iterate<P>& at, Step<P>& step) {
     rhs_x_ = -r_x_;
     rhs_c_ = -(r_c_ + give_s_.cwiseProduct(r_s_));
     kkt_.solve(rhs_x_, rhs_c_, step.x, step.lambda);
     if (barrier.x_box().any_fixed()) step.x.array() *= barrier.x_box().free_mask();
     step.s = give_s_.cwiseProduct(step.lambda - r_s_);
-    barrier.x_box().multiplier_step(at.x.array(), at.zx, step.x.array(), mu, step.zx);
-    barrier.s_box().multiplier_step(at.s.array(), at.zs, step.s.array(), mu, step.zs);
+    barrier.x_box().multiplier_step(at.zx, step.x.array(), aim_x_, step.zx);
+    barrier.s_box().multiplier_step(at.zs, step.s.array(), aim_s_, step.zs);
   }
 
   Kkt kkt_;
   InertiaCorrection<Scalar> correction_;
   Inertia inertia_;
   Scalar delta_w_ = 0;
+  BoxSides<Scalar, P::kVariables> aim_x_;
+  BoxSides<Scalar, P::kConstraints> aim_s_;
   VectorN sigma_x_, r_x_, rhs_x_;
   VectorM give_s_, d_, r_s_, r_c_, rhs_c_;
 };
