@@ -12,7 +12,7 @@ namespace tenon {
 
 struct Arguments {
   std::vector<std::string> names;  // the words that are no flags: problems, a vehicle, a file
-  std::string wrenches, output, trace;
+  std::string wrenches, output, trace, dump, profile;
   std::optional<std::string> solver, solvers, initial;
   std::vector<std::string> set;
   std::optional<double> tolerance, time_limit;
@@ -22,9 +22,8 @@ struct Arguments {
   int degree = 2;
   bool constant = false, cold = false, json = false, quiet = false, verbose = false;
 
-  /// The solver options that were given; the others as they are by default.
-  Options options() const {
-    Options options;
+  /// The solver options that were given; the others as they are by default, or as the caller has them.
+  Options options(Options options = {}) const {
     if (tolerance) options.tolerance = *tolerance;
     if (max_iterations) options.max_iterations = *max_iterations;
     if (time_limit) options.time_limit = *time_limit;

@@ -6,10 +6,10 @@
 #include <random>
 
 #include "tenon/apps/json.hpp"
+#include "tenon/apps/named_problem.hpp"
 #include "tenon/apps/verb.hpp"
 #include "tenon/core/check_derivatives.hpp"
 #include "tenon/core/solver.hpp"
-#include "tenon/problems/catalogue.hpp"
 
 namespace tenon {
 
@@ -50,15 +50,14 @@ double outside(const Vector& x, const Bounds& bounds) {
 }  // namespace
 
 int run_check(const Arguments& arguments) {
-  const CatalogueEntry& entry = find_problem(arguments.names.front());
-  const std::unique_ptr<Nlp> problem = entry.make();
+  const NamedProblem named = load_problem(arguments.names.front());
+  const std::unique_ptr<Nlp>& problem = named.problem;
   const double tolerance = arguments.tolerance.value_or(kDerivativeTolerance);
   const int n = problem->num_variables(), m = problem->num_constraints();
   Bounds bounds(n, m);
   problem->bounds(bounds);
   validate(*problem, bounds);
-  Vector start(n);
-  problem->initial_point(start);
+  const Vector& start = named.start.x;
 
   std::mt19937_64 random(arguments.seed);
   std::normal_distribution<double> normal;
@@ -74,7 +73,7 @@ int run_check(const Arguments& arguments) {
   if (arguments.json) {
     print(Json::object()
               .set("schema", 1)
-              .set("problem", entry.name)
+              .set("problem", named.name)
               .set("passed", passed)
               .set("finite", report.finite)
               .set("tolerance", tolerance)
@@ -91,7 +90,7 @@ int run_check(const Arguments& arguments) {
     return passed ? kFinished : kNotSolved;
   }
   const auto verdict = [tolerance](double error) { return error <= tolerance ? "as differences say" : "WRONG"; };
-  fmt::print("{}: {} variables, {} constraints\n", entry.name, n, m);
+  fmt::print("{}: {} variables, {} constraints\n", named.name, n, m);
   fmt::print("  gradient   relative error {:.1e}, {}\n", report.gradient_error, verdict(report.gradient_error));
   fmt::print("  Jacobian   relative error {:.1e}, {}; {} of {} entries\n", report.jacobian_error, verdict(report.jacobian_error),
              jacobian.nonzeros(), static_cast<long>(n) * m);

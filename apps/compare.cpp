@@ -9,13 +9,13 @@
 
 #include "tenon/apps/comma_list.hpp"
 #include "tenon/apps/interrupt.hpp"
+#include "tenon/apps/named_problem.hpp"
 #include "tenon/apps/progress.hpp"
 #include "tenon/apps/result_json.hpp"
 #include "tenon/apps/table.hpp"
 #include "tenon/apps/verb.hpp"
 #include "tenon/core/nearest_name.hpp"
 #include "tenon/problems/allocation/vehicle_file.hpp"
-#include "tenon/problems/catalogue.hpp"
 
 namespace tenon {
 
@@ -78,13 +78,16 @@ void print_solvers(const std::vector<SolverDescription>& solvers) {
 }
 
 int run_compare(const Arguments& arguments) {
-  const Options options = arguments.options();
+  if (!arguments.profile.empty()) return compare_profile(arguments);
+  if (arguments.names.empty()) throw std::invalid_argument("compare: nothing named (expected PROBLEM..., or --profile DIR)");
   if (std::any_of(arguments.names.begin(), arguments.names.end(), is_vehicle)) {
     if (arguments.names.size() > 1) throw std::invalid_argument("compare: a vehicle stands alone (expected one vehicle, or problems)");
     return compare_vehicle(arguments.names.front(), arguments);
   }
   const std::vector<SolverDescription> solvers = chosen_solvers(arguments);
-  for (const std::string& name : arguments.names) static_cast<void>(find_problem(name));
+  std::vector<NamedProblem> problems;  // all of them before the first is solved: a name that is wrong shows at once
+  for (const std::string& name : arguments.names) problems.push_back(load_problem(name));
+  const Options options = arguments.options(problems.front().options);
 
   Table table({"problem", "solver", "status", "objective", "residual", "iterations", "evaluations", "time"});
   Json rows = Json::array();
@@ -92,19 +95,17 @@ int run_compare(const Arguments& arguments) {
   {
     Progress progress("compare", std::ssize(arguments.names) * std::ssize(solvers), arguments.quiet);
     long done = 0;
-    for (const std::string& name : arguments.names) {
-      const CatalogueEntry& entry = find_problem(name);
-      const std::unique_ptr<Nlp> problem = entry.make();
+    for (const NamedProblem& named : problems) {
       for (const SolverDescription& solver : solvers) {
         if (interrupted()) return kInterrupted;
-        const Measurement m = measure(*problem, solver.name, options, suggested_start(*problem), kTimedRuns);
-        table.add(table_row(name, m));
+        const Measurement m = measure(named, solver.name, options, kTimedRuns);
+        table.add(table_row(named.name, m));
         if (!m.refusal.empty()) {
-          refusals.push_back(fmt::format("{} on {}: {}", name, solver.name, m.refusal));
-          rows.push(Json::object().set("problem", name).set("solver", solver.name).set("refusal", m.refusal));
+          refusals.push_back(fmt::format("{} on {}: {}", named.name, solver.name, m.refusal));
+          rows.push(Json::object().set("problem", named.name).set("solver", solver.name).set("refusal", m.refusal));
         } else {
-          Json row = result_json(*problem, m);
-          if (entry.published_objective) row.set("published_objective", *entry.published_objective);
+          Json row = result_json(*named.problem, m);
+          if (named.published_objective) row.set("published_objective", *named.published_objective);
           rows.push(row);
         }
         progress.update(++done);

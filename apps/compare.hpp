@@ -21,4 +21,7 @@ void print_solvers(const std::vector<SolverDescription>& solvers);
 /// `tenon compare VEHICLE --rows N --seed S`: random rows of an allocation on every back end. Returns an ExitCode.
 int compare_vehicle(const std::string& vehicle, const Arguments& arguments);
 
+/// `tenon compare --profile DIR`: every .nl file of a folder on every back end, as a performance profile. Returns an ExitCode.
+int compare_profile(const Arguments& arguments);
+
 }  // namespace tenon

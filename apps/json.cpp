@@ -1,8 +1,13 @@
 #include "tenon/apps/json.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <utility>
+
+#include "tenon/core/input_error.hpp"
 
 namespace tenon {
 
@@ -48,6 +53,60 @@ Json& Json::set(const std::string& key, const Json& value) {
 Json& Json::push(const Json& value) {
   value_->push_back(*value.value_);
   return *this;
+}
+
+Json Json::parse(const std::string& text, const std::string& file) {
+  try {
+    Json json(0);
+    *json.value_ = ordered_json::parse(text);
+    return json;
+  } catch (const ordered_json::parse_error& error) {
+    const std::size_t at = std::min(error.byte > 0 ? error.byte - 1 : 0, text.size());
+    const std::string before = text.substr(0, at);
+    const auto line = static_cast<int>(std::count(before.begin(), before.end(), '\n')) + 1;
+    const auto column = static_cast<int>(at - (before.rfind('\n') + 1)) + 1;
+    throw InputError({file, line, column}, "this is no JSON", "an object as `tenon solve --dump` writes it");
+  } catch (const ordered_json::exception&) {  // a number out of range
+    throw InputError({file, 0, 0}, "a number beyond double precision", "an object as `tenon solve --dump` writes it");
+  }
+}
+
+bool Json::has(const std::string& key) const {
+  return value_->is_object() && value_->contains(key);
+}
+
+Json Json::at(const std::string& key) const {
+  if (!has(key)) throw std::invalid_argument("the key '" + key + "' is missing");
+  Json json(0);
+  *json.value_ = (*value_)[key];
+  return json;
+}
+
+bool Json::is_null() const {
+  return value_->is_null();
+}
+
+double Json::number() const {
+  if (!value_->is_number()) throw std::invalid_argument("a number is missing where " + value_->dump().substr(0, 40) + " stands");
+  const auto value = value_->get<double>();
+  if (!std::isfinite(value)) throw std::invalid_argument("a number is not finite");
+  return value;
+}
+
+std::string Json::as_text() const {
+  if (!value_->is_string()) throw std::invalid_argument("a text is missing where " + value_->dump().substr(0, 40) + " stands");
+  return value_->get<std::string>();
+}
+
+Vector Json::as_vector() const {
+  if (!value_->is_array()) throw std::invalid_argument("a list is missing where " + value_->dump().substr(0, 40) + " stands");
+  Vector values(static_cast<Eigen::Index>(value_->size()));
+  Json entry(0);
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    *entry.value_ = (*value_)[static_cast<std::size_t>(k)];
+    values[k] = entry.number();
+  }
+  return values;
 }
 
 std::string Json::text() const {

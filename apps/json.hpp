@@ -1,4 +1,4 @@
-// A JSON value to be written: what `--json` prints. Keys keep the order in which they were set; a non-finite number becomes null.
+// A JSON value: what `--json` prints, and what a dump is read from. Keys keep the order in which they were set; a non-finite number becomes null.
 #pragma once
 
 #include <memory>
@@ -35,6 +35,18 @@ class Json {
   Json& set(const std::string& key, const Json& value);
   /// Of an array.
   Json& push(const Json& value);
+
+  /// Throws InputError with the place where the text is no JSON; `file` is the name used in messages.
+  static Json parse(const std::string& text, const std::string& file);
+
+  /// Of an object; throws std::invalid_argument, naming the key, where there is none.
+  bool has(const std::string& key) const;
+  Json at(const std::string& key) const;
+  /// Throw std::invalid_argument where the value is of another type, or a number not finite.
+  bool is_null() const;
+  double number() const;
+  std::string as_text() const;
+  Vector as_vector() const;
 
   /// With line breaks and an indentation of 2, ending with a newline.
   std::string text() const;

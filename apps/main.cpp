@@ -6,6 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "tenon/apps/ampl.hpp"
 #include "tenon/apps/command_line.hpp"
 #include "tenon/apps/interrupt.hpp"
 #include "tenon/core/input_error.hpp"
@@ -13,10 +14,14 @@
 
 namespace {
 
+int run_verb(int argc, char** argv) {
+  const auto invocation = tenon::read_command_line(argc, argv);
+  return invocation ? invocation->verb->run(invocation->arguments) : tenon::kFinished;
+}
+
 int run(int argc, char** argv) {
   tenon::watch_for_interrupts();
-  const auto invocation = tenon::read_command_line(argc, argv);
-  const int code = invocation ? invocation->verb->run(invocation->arguments) : tenon::kFinished;
+  const int code = tenon::is_ampl_call(argc, argv) ? tenon::run_ampl(argc, argv) : run_verb(argc, argv);
   if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
     throw tenon::OutputError(fmt::format("standard output: cannot be written: {}", std::strerror(errno)));
   }

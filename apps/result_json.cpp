@@ -22,6 +22,21 @@ Json evaluations_json(const EvaluationCounts& counts) {
       .set("hessian", counts.hessian);
 }
 
+void set_explanation(Json& json, const Nlp& problem, const Measurement& measurement) {
+  const Explanation explanation = explain(problem, measurement.point, measurement.result);
+  json.set("explanation", explanation.sentences);
+  if (measurement.result.status != Status::infeasible) return;
+  Json list = Json::array();
+  for (const Limit& limit : explanation.conflict) {
+    list.push(Json::object()
+                  .set("name", limit.name)
+                  .set("kind", limit.is_bound ? "bound" : "row")
+                  .set("violation", limit.violation)
+                  .set("multiplier", limit.multiplier));
+  }
+  json.set("infeasible_constraints", list);
+}
+
 Json result_json(const Nlp& problem, const Measurement& measurement) {
   const Result& result = measurement.result;
   Json json = Json::object();
@@ -31,20 +46,7 @@ Json result_json(const Nlp& problem, const Measurement& measurement) {
   if (result.scaled_residual) json.set("residual_scaled", residual_json(*result.scaled_residual));
   json.set("evaluations", evaluations_json(measurement.counts));
   json.set("x", measurement.point.x).set("lambda", measurement.point.lambda).set("z", measurement.point.z);
-  if (result.status == Status::solved) return json;
-  const Explanation explanation = explain(problem, measurement.point, result);
-  json.set("explanation", explanation.sentences);
-  if (result.status == Status::infeasible) {
-    Json list = Json::array();
-    for (const Limit& limit : explanation.conflict) {
-      list.push(Json::object()
-                    .set("name", limit.name)
-                    .set("kind", limit.is_bound ? "bound" : "row")
-                    .set("violation", limit.violation)
-                    .set("multiplier", limit.multiplier));
-    }
-    json.set("infeasible_constraints", list);
-  }
+  if (result.status != Status::solved) set_explanation(json, problem, measurement);
   return json;
 }
 

@@ -1,17 +1,18 @@
-// tenon solve PROBLEM: one nonlinear program, from its own starting point.
+// tenon solve PROBLEM: one nonlinear program, from its own starting point. A failed one can be dumped, see dump.hpp.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <stdexcept>
 
+#include "tenon/apps/default_solver.hpp"
+#include "tenon/apps/dump.hpp"
 #include "tenon/apps/interrupt.hpp"
 #include "tenon/apps/observers.hpp"
 #include "tenon/apps/result_json.hpp"
 #include "tenon/apps/table.hpp"
 #include "tenon/apps/verb.hpp"
 #include "tenon/core/explanation.hpp"
-#include "tenon/problems/catalogue.hpp"
-#include "tenon/solvers/make_solver.hpp"
+#include "tenon/core/output_file.hpp"
 
 namespace tenon {
 
@@ -19,20 +20,13 @@ namespace {
 
 constexpr int kVariablesShown = 20;
 
-/// The first back end that is there: tenon's own comes first in the list.
-std::string default_solver() {
-  for (const SolverDescription& s : list_solvers()) {
-    if (s.available) return s.name;
-  }
-  throw std::invalid_argument("no solver is available (expected a build with at least one back end)");
-}
-
-void print_result(const Nlp& problem, const CatalogueEntry& entry, const Measurement& m) {
+void print_result(const NamedProblem& named, const Measurement& m) {
+  const Nlp& problem = *named.problem;
   const Result& result = m.result;
   const auto line = [](const char* what, const std::string& value) { fmt::print("  {:<14}{}\n", what, value); };
-  fmt::print("{} by {}: {}\n", entry.name, m.solver, to_string(result.status));
+  fmt::print("{} by {}: {}\n", named.name, m.solver, to_string(result.status));
   line("objective", fmt::format("{:.12g}", result.objective));
-  if (entry.published_objective) line("published", fmt::format("{:.12g}", *entry.published_objective));
+  if (named.published_objective) line("published", fmt::format("{:.12g}", *named.published_objective));
   line("iterations", fmt::format("{}", result.iterations));
   const auto residual_text = [](const KktResidual& r) {
     return fmt::format("stationarity {:.2e}, primal {:.2e}, complementarity {:.2e}", r.stationarity, r.primal, r.complementarity);
@@ -55,18 +49,19 @@ void print_result(const Nlp& problem, const CatalogueEntry& entry, const Measure
 }  // namespace
 
 int run_solve(const Arguments& arguments) {
-  const CatalogueEntry& entry = find_problem(arguments.names.front());
-  const std::unique_ptr<Nlp> problem = entry.make();
-  Options options = arguments.options();
+  const NamedProblem named = load_problem(arguments.names.front());
+  Options options = arguments.options(named.options);
+  if (!arguments.dump.empty()) check_output_path(arguments.dump);
   Observers observers(arguments);
   options.on_iteration = observers.callback();
-  const Measurement m = measure(*problem, arguments.solver ? *arguments.solver : default_solver(), options, suggested_start(*problem), 0);
+  const Measurement m = measure(named, arguments.solver ? *arguments.solver : default_solver(), options, 0);
   if (!m.refusal.empty()) throw std::invalid_argument(m.refusal);
   observers.finish();
+  if (!arguments.dump.empty() && !succeeded(m.result.status)) write_dump(arguments.dump, named, options, m);
   if (arguments.json)
-    print(result_json(*problem, m));
+    print(result_json(*named.problem, m));
   else if (!arguments.quiet)
-    print_result(*problem, entry, m);
+    print_result(named, m);
   if (interrupted()) return kInterrupted;
   return succeeded(m.result.status) ? kFinished : kNotSolved;
 }
