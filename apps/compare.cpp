@@ -104,7 +104,7 @@ int run_compare(const Arguments& arguments) {
           refusals.push_back(fmt::format("{} on {}: {}", named.name, solver.name, m.refusal));
           rows.push(Json::object().set("problem", named.name).set("solver", solver.name).set("refusal", m.refusal));
         } else {
-          Json row = result_json(*named.problem, m, options.tolerance);
+          Json row = result_json(*named.problem, m);
           if (named.published_objective) row.set("published_objective", *named.published_objective);
           rows.push(row);
         }

@@ -71,7 +71,7 @@ void write_dump(const std::string& path, const NamedProblem& named, const Option
   json.set("start", point_json(named.start));
   json.set("solver", m.solver).set("status", to_string(m.result.status)).set("iterations", m.result.iterations);
   json.set("objective", m.result.objective).set("residual", residual_json(m.result.residual));
-  json.set("infeasible_constraints", violations_json(*named.problem, m.point.x, options.tolerance));
+  set_explanation(json, *named.problem, m);
   json.set("point", point_json(m.point));
   OutputFile file(path);
   file.append(json.text());

@@ -8,7 +8,8 @@
 //     nl, nl_hex    the bytes of the .nl file as text, or in hexadecimal where they are no plain text
 //     options       tolerance, max_iterations, time_limit (null: none)
 //     start         x, lambda, z: where the solve began, and where a replay begins
-//     solver, status, iterations, objective, residual, infeasible_constraints, point {x, lambda, z}: how it ended, for the reader alone
+//     solver, status, iterations, objective, residual, explanation, infeasible_constraints, point {x, lambda, z}: how it ended, for
+//                   the reader alone
 //
 // `tenon solve FILE.json` and `tenon compare FILE.json` go from `start` with `options`; flags on the command line come first. The problem
 // is inside, so that the dump stays true when the file it came from has changed.

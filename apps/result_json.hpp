@@ -6,23 +6,14 @@
 
 namespace tenon {
 
-/// Rows and bounds that x violates by more than the tolerance, worst first.
-struct Violation {
-  std::string name;
-  double value = 0;  // of the row or variable
-  double lower = 0, upper = 0;
-  double violation = 0;
-};
-std::vector<Violation> violations(const Nlp& problem, const Vector& x, double tolerance);
-
-/// Their names and violations.
-Json violations_json(const Nlp& problem, const Vector& x, double tolerance);
-
 Json residual_json(const KktResidual& residual);
 Json evaluations_json(const EvaluationCounts& counts);
 
-/// schema, problem, solver, status, objective, iterations, time_s, residual, evaluations, x, lambda, z; infeasible_constraints where they
-/// hurt.
-Json result_json(const Nlp& problem, const Measurement& measurement, double tolerance);
+/// The field `explanation` of an end that is not `solved`, and of an infeasible one `infeasible_constraints`: what cannot be met together.
+void set_explanation(Json& json, const Nlp& problem, const Measurement& measurement);
+
+/// schema, problem, solver, status, objective, iterations, time_s, residual, residual_scaled where the solver scaled, evaluations, x, lambda,
+/// z, and the explanation.
+Json result_json(const Nlp& problem, const Measurement& measurement);
 
 }  // namespace tenon

@@ -11,6 +11,7 @@
 #include "tenon/apps/result_json.hpp"
 #include "tenon/apps/table.hpp"
 #include "tenon/apps/verb.hpp"
+#include "tenon/core/explanation.hpp"
 #include "tenon/core/output_file.hpp"
 
 namespace tenon {
@@ -19,7 +20,7 @@ namespace {
 
 constexpr int kVariablesShown = 20;
 
-void print_result(const NamedProblem& named, const Measurement& m, double tolerance) {
+void print_result(const NamedProblem& named, const Measurement& m) {
   const Nlp& problem = *named.problem;
   const Result& result = m.result;
   const auto line = [](const char* what, const std::string& value) { fmt::print("  {:<14}{}\n", what, value); };
@@ -27,16 +28,15 @@ void print_result(const NamedProblem& named, const Measurement& m, double tolera
   line("objective", fmt::format("{:.12g}", result.objective));
   if (named.published_objective) line("published", fmt::format("{:.12g}", *named.published_objective));
   line("iterations", fmt::format("{}", result.iterations));
-  line("residual", fmt::format("stationarity {:.2e}, primal {:.2e}, complementarity {:.2e}", result.residual.stationarity,
-                               result.residual.primal, result.residual.complementarity));
+  const auto residual_text = [](const KktResidual& r) {
+    return fmt::format("stationarity {:.2e}, primal {:.2e}, complementarity {:.2e}", r.stationarity, r.primal, r.complementarity);
+  };
+  line("residual", residual_text(result.residual));
+  if (result.scaled_residual) line("scaled", residual_text(*result.scaled_residual));
   line("evaluations", fmt::format("{} objective, {} gradient, {} constraints, {} Jacobian, {} Hessian", m.counts.objective,
                                   m.counts.gradient, m.counts.constraints, m.counts.jacobian, m.counts.hessian));
   line("time", duration_text(m.time));
-  if (result.status == Status::infeasible) {
-    for (const Violation& v : violations(problem, m.point.x, tolerance)) {
-      line("violated", fmt::format("{} = {:.6g}, not in [{}, {}]", v.name, v.value, v.lower, v.upper));
-    }
-  }
+  fmt::print("{}", explain(problem, m.point, result).text());
   Table table({"", "variable", "value", "multiplier"});
   const int shown = std::min(problem.num_variables(), kVariablesShown);
   for (int i = 0; i < shown; ++i) {
@@ -59,9 +59,9 @@ int run_solve(const Arguments& arguments) {
   observers.finish();
   if (!arguments.dump.empty() && !succeeded(m.result.status)) write_dump(arguments.dump, named, options, m);
   if (arguments.json)
-    print(result_json(*named.problem, m, options.tolerance));
+    print(result_json(*named.problem, m));
   else if (!arguments.quiet)
-    print_result(named, m, options.tolerance);
+    print_result(named, m);
   if (interrupted()) return kInterrupted;
   return succeeded(m.result.status) ? kFinished : kNotSolved;
 }

@@ -47,6 +47,18 @@ class AsNlp final : public Nlp {
     }
   }
 
+  std::vector<SoftRow> soft_rows() const override {
+    if constexpr (requires { problem_.soft_rows(); }) return problem_.soft_rows();
+    else return Nlp::soft_rows();
+  }
+  void nominal_values(VectorRef variables, VectorRef rows) const override {
+    if constexpr (requires { problem_.nominal_values(variables, rows); }) problem_.nominal_values(variables, rows);
+  }
+  HessianKind hessian_kind() const override {
+    if constexpr (requires { problem_.hessian_kind(); }) return problem_.hessian_kind();
+    else return Nlp::hessian_kind();
+  }
+
   Workspace make_workspace() const override { return std::make_unique<FixedScratch>(problem_.make_workspace()); }
 
   void prepare(ConstVectorRef x, Workspace& workspace) const override {

@@ -1,7 +1,7 @@
 // CountedNlp, Counted<P>: the same problem, with a count of what was evaluated. Decorators, so that no solver counts.
 #pragma once
 
-#include "tenon/core/nlp.hpp"
+#include "tenon/core/nlp_decorator.hpp"
 
 namespace tenon {
 
@@ -17,20 +17,9 @@ struct EvaluationCounts {
 };
 
 /// Refers to the problem and to the counts, which must outlive this; counts are the caller's to reset.
-class CountedNlp final : public Nlp {
+class CountedNlp final : public NlpDecorator {
  public:
-  CountedNlp(const Nlp& problem, EvaluationCounts& counts) : problem_(problem), counts_(counts) {}
-
-  int num_variables() const override { return problem_.num_variables(); }
-  int num_constraints() const override { return problem_.num_constraints(); }
-  SparsePattern jacobian_pattern() const override { return problem_.jacobian_pattern(); }
-  SparsePattern hessian_pattern() const override { return problem_.hessian_pattern(); }
-  void bounds(Bounds& bounds) const override { problem_.bounds(bounds); }
-  void initial_point(VectorRef x) const override { problem_.initial_point(x); }
-  Workspace make_workspace() const override { return problem_.make_workspace(); }
-  std::string name() const override { return problem_.name(); }
-  std::string variable_name(int i) const override { return problem_.variable_name(i); }
-  std::string constraint_name(int j) const override { return problem_.constraint_name(j); }
+  CountedNlp(const Nlp& problem, EvaluationCounts& counts) : NlpDecorator(problem), counts_(counts) {}
 
   void prepare(ConstVectorRef x, Workspace& workspace) const override {
     ++counts_.prepare;
@@ -59,7 +48,6 @@ class CountedNlp final : public Nlp {
   }
 
  private:
-  const Nlp& problem_;
   EvaluationCounts& counts_;
 };
 

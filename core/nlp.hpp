@@ -21,6 +21,7 @@
 #include <span>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "tenon/core/eigen.hpp"
 #include "tenon/core/sparse_pattern.hpp"
@@ -53,6 +54,21 @@ struct BasicBounds {
 
 using Bounds = BasicBounds<double, Dynamic, Dynamic>;
 
+/// A row that may be violated at a price: linear |v| + quadratic/2 v^2, v what it lies outside its bounds. An exact penalty: as long as the
+/// hard problem's |lambda| is below `linear`, its solution is the soft one's too.
+struct SoftRow {
+  int row = 0;
+  double linear = 0;     // > 0, per unit of the row
+  double quadratic = 0;  // >= 0, per unit of the row squared
+};
+
+/// What `hessian` gives.
+enum class HessianKind {
+  exact,         // the Hessian of the Lagrangian
+  gauss_newton,  // a positive semidefinite part of it, near the whole where residuals or curvatures are small
+  none,          // nothing (its pattern is empty): a solver that needs one keeps an approximation of its own
+};
+
 /// The virtual face of the contract: sizes known at run time, sparse derivatives. Every back end takes it.
 class Nlp {
  public:
@@ -78,6 +94,14 @@ class Nlp {
 
   /// Fills bounds that arrive with the right sizes and without any limit. Asked for at the start of every solve.
   virtual void bounds(Bounds& bounds) const = 0;
+
+  /// Rows that may be violated at a price; their compliance is 0. Asked for once.
+  virtual std::vector<SoftRow> soft_rows() const { return {}; }
+
+  /// The typical size of each variable (n) and of each row's values (m), > 0: 1e-6 for a gap in metres. They arrive as 0, not stated.
+  virtual void nominal_values(VectorRef variables, VectorRef rows) const { static_cast<void>(variables), static_cast<void>(rows); }
+
+  virtual HessianKind hessian_kind() const { return HessianKind::exact; }
 
   /// A point to start from (n). The default is 0.
   virtual void initial_point(VectorRef x) const { x.setZero(); }

@@ -15,6 +15,8 @@ struct Options {
   double time_limit = std::numeric_limits<double>::infinity();  // s
   bool warm_start = false;       // the point's lambda and z are a guess worth keeping: start near them, with a small barrier parameter
 
+  bool scaling = true;           // let the solver scale a sparse problem: core/scaled_nlp.hpp
+
   double initial_mu = 0;         // first barrier parameter of an interior-point method; 0: the solver's choice
 
   /// Called at every iterate, the first included; return false to stop there (Status::stopped).

@@ -1,6 +1,8 @@
 // What a solve says beside its point. Scalars only, so that returning it allocates nothing.
 #pragma once
 
+#include <optional>
+
 #include "tenon/core/kkt_residual.hpp"
 #include "tenon/core/status.hpp"
 
@@ -11,6 +13,7 @@ struct Result {
   int iterations = 0;
   double objective = 0;   // f(x) at the returned point
   KktResidual residual;   // at the returned point, by the independent ruler
+  std::optional<KktResidual> scaled_residual;  // of the scaled problem, where the solver scaled it: `solved` then speaks of this one
   double elapsed = 0;     // s, the solve alone
 };
 

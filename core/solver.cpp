@@ -33,6 +33,13 @@ void validate(const Nlp& problem, const Bounds& bounds) {
   }
 }
 
+void refuse_soft_rows(const Nlp& problem) {
+  const std::vector<SoftRow> soft = problem.soft_rows();
+  if (soft.empty()) return;
+  throw std::invalid_argument("row " + problem.constraint_name(soft.front().row) + " of " + problem.name() +
+                              " is soft (expected make_solver, or WithSoftRows around the problem)");
+}
+
 void validate(const Nlp& problem, const Point& point) {
   validate_length("x", point.x.size(), problem.num_variables());
   validate_length("lambda", point.lambda.size(), problem.num_constraints());

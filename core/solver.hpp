@@ -19,6 +19,9 @@ class Solver {
 /// Throws std::invalid_argument, naming the variable or row and both values, where lower > upper, a bound is NaN or a compliance is negative.
 void validate(const Nlp& problem, const Bounds& bounds);
 
+/// Throws std::invalid_argument where a row is soft: a back end takes its slacks (with_soft_rows.hpp, which make_solver sees to).
+void refuse_soft_rows(const Nlp& problem);
+
 /// Throws std::invalid_argument where the point's vectors do not have n, m and n entries.
 void validate(const Nlp& problem, const Point& point);
 

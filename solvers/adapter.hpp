@@ -38,12 +38,13 @@ class PreparedNlp {
   Vector x_;
 };
 
-/// The bounds as they stand now, validated. Throws std::invalid_argument where a row is compliant: these libraries take hard rows only
+/// The bounds as they stand now, validated. Throws std::invalid_argument where a row is compliant or soft: these libraries take hard rows only
 /// (make_solver gives each compliant row a slack, core/with_slacks.hpp).
 inline Bounds hard_bounds(const Nlp& problem, const char* library) {
   Bounds bounds(problem.num_variables(), problem.num_constraints());
   problem.bounds(bounds);
   validate(problem, bounds);
+  refuse_soft_rows(problem);
   for (int j = 0; j < problem.num_constraints(); ++j) {
     if (bounds.compliance[j] > 0) {
       throw std::invalid_argument("row " + problem.constraint_name(j) + " of " + problem.name() + " is compliant, and " + library +

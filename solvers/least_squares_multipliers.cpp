@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "tenon/solvers/first_order.hpp"
+#include "tenon/core/first_order.hpp"
 
 namespace tenon {
 

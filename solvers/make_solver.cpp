@@ -6,6 +6,7 @@
 
 #include "tenon/core/nearest_name.hpp"
 #include "tenon/core/with_slacks.hpp"
+#include "tenon/core/with_soft_rows.hpp"
 #include "tenon/solvers/ipopt.hpp"
 #include "tenon/solvers/newton_kkt/make_newton_kkt.hpp"
 #include "tenon/solvers/nlopt.hpp"
@@ -56,6 +57,27 @@ class SlackedSolver final : public Solver {
   std::unique_ptr<Solver> inner_;
 };
 
+/// Any back end for a problem with soft rows. The residual is that of the problem with slacks, where a soft row may be violated at its price.
+class SoftSolver final : public Solver {
+ public:
+  SoftSolver(const std::string& name, const Nlp& problem, const Options& options)
+      : problem_(problem), softened_(problem), inner_(make_solver(name, softened_, options)) {}
+
+  Result solve(Point& point) override {
+    validate(problem_, point);
+    Point lifted = softened_.lift(point);
+    Result result = inner_->solve(lifted);
+    softened_.lower(lifted, point);
+    result.objective -= softened_.price(lifted.x);
+    return result;
+  }
+
+ private:
+  const Nlp& problem_;
+  WithSoftRows softened_;
+  std::unique_ptr<Solver> inner_;
+};
+
 }  // namespace
 
 std::vector<SolverDescription> list_solvers() {
@@ -72,6 +94,7 @@ std::unique_ptr<Solver> make_solver(const std::string& name, const Nlp& problem,
     std::ranges::transform(all, std::back_inserter(names), &SolverDescription::name);
     throw std::invalid_argument("unknown solver \"" + name + "\", did you mean \"" + nearest_name(name, names) + "\"?");
   }
+  if (!problem.soft_rows().empty()) return std::make_unique<SoftSolver>(name, problem, options);
   const BackEnd& back_end = kBackEnds[found - all.begin()];
   if (!back_end.takes_compliant_rows && has_compliant_rows(problem)) return std::make_unique<SlackedSolver>(problem, back_end, options);
   return back_end.make(problem, options);

@@ -22,7 +22,8 @@ struct SolverDescription {
 /// Every back end this project knows, available or not, in the order in which comparisons list them.
 std::vector<SolverDescription> list_solvers();
 
-/// A solver for `problem`, which must outlive it. The constructor allocates what a solve needs.
+/// A solver for `problem`, which must outlive it. The constructor allocates what a solve needs. Soft rows, and for some back ends compliant
+/// ones, get slacks on the way; the answer is that of the problem itself, its objective without the price of the slacks.
 /// Throws std::invalid_argument for an unknown name (the nearest is named), for a back end that is not available, for options
 /// that make no sense, and for a problem that the back end cannot take (what it lacks is said).
 std::unique_ptr<Solver> make_solver(const std::string& name, const Nlp& problem, const Options& options = {});

@@ -3,8 +3,9 @@
 // NLopt returns no multipliers and stops on small steps, not on residuals. So its tolerances are set near the rounding, multipliers come
 // from least squares, and the verdict is the ruler's: `solved` as everywhere; `acceptable` also where the residual is within 1e-5 of the
 // gradient's size, because who compares objective values resolves x to the root of the rounding and no better; else a stop on small steps
-// is a numerical_failure (or infeasible, first_order.hpp). NLopt returns the lowest objective among points feasible within tolerance, which
-// may be an early one, or the start where none was: the ruler chooses between that and the last point whose gradient NLopt wanted.
+// is a numerical_failure (or infeasible, local_infeasibility.hpp). NLopt returns the lowest objective among points feasible within
+// tolerance, which may be an early one, or the start where none was: the ruler chooses between that and the last point whose gradient
+// NLopt wanted.
 // MMA and CCSAQ want a start that satisfies the rows: from elsewhere they may run away.
 #include "tenon/solvers/nlopt.hpp"
 
@@ -12,7 +13,7 @@
 #include <stdexcept>
 
 #include "tenon/solvers/adapter.hpp"
-#include "tenon/solvers/first_order.hpp"
+#include "tenon/solvers/local_infeasibility.hpp"
 #include "tenon/solvers/least_squares_multipliers.hpp"
 #include "tenon/solvers/nlopt_run.hpp"
 

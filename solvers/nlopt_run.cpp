@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "tenon/solvers/adapter.hpp"
-#include "tenon/solvers/first_order.hpp"
+#include "tenon/solvers/local_infeasibility.hpp"
 
 namespace tenon {
 

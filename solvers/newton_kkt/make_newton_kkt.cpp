@@ -1,38 +1,112 @@
 #include "tenon/solvers/newton_kkt/make_newton_kkt.hpp"
 
+#include <algorithm>
+
+#include "tenon/core/scaled_nlp.hpp"
 #include "tenon/solvers/newton_kkt/newton_kkt.hpp"
 
 namespace tenon {
 
 namespace {
 
+/// The trace of the scaled problem, with the objective that the user knows.
+Options in_user_units(Options options, const ScaledNlp& scaled) {
+  if (options.on_iteration) {
+    options.on_iteration = [observer = options.on_iteration, &scaled](Iteration iteration) {
+      iteration.objective /= scaled.objective_factor();
+      return observer(iteration);
+    };
+  }
+  return options;
+}
+
+/// Solves the scaled problem and answers for the problem itself.
 class SparseNewtonKkt final : public Solver {
  public:
   SparseNewtonKkt(const Nlp& problem, const Options& options)
-      : problem_(problem), bounds_(problem.num_variables(), problem.num_constraints()), solver_(problem, options) {}
+      : problem_(problem),
+        options_(options),
+        bounds_(problem.num_variables(), problem.num_constraints()),
+        scaled_(problem),
+        solver_(scaled_, in_user_units(options, scaled_)),
+        workspace_(problem.make_workspace()),
+        jacobian_(problem.jacobian_pattern().zero_matrix()) {
+    gradient_.resize(problem.num_variables());
+    beside_.resize(problem.num_variables());
+    rows_.resize(problem.num_constraints());
+  }
 
   Result solve(Point& point) override {
     validate(problem_, point);
     problem_.bounds(bounds_);
     validate(problem_, bounds_);
-    return solver_.solve(point);
+    choose_scale(point);
+    solver_.options().tolerance = options_.tolerance * std::max(scaled_.smallest_factor(), kMostTightened);
+    scaled_.scale(point);
+    Result result = solver_.solve(point);
+    scaled_.unscale(point);
+    if (!scaled_.is_identity()) judge(point, result);
+    return result;
   }
 
  private:
+  /// By the derivatives at the start, and a step aside for rows that are flat there; a warm start keeps the scale of the solve before.
+  void choose_scale(const Point& point) {
+    if (!options_.scaling || (options_.warm_start && chosen_)) return;
+    chosen_ = true;
+    problem_.prepare(point.x, workspace_);
+    problem_.gradient(point.x, workspace_, gradient_);
+    problem_.jacobian(point.x, workspace_, values_of(jacobian_));
+    scaled_.choose(gradient_, values_of(jacobian_));
+    if (!scaled_.has_flat_rows()) return;
+    beside_ = (point.x.array() + point.x.array().abs().max(1.0)).max(bounds_.x_lower.array()).min(bounds_.x_upper.array());
+    problem_.prepare(beside_, workspace_);
+    problem_.jacobian(beside_, workspace_, values_of(jacobian_));
+    scaled_.choose_flat_rows(values_of(jacobian_));
+  }
+
+  /// The answer in the problem's own units.
+  void judge(const Point& point, Result& result) {
+    result.objective /= scaled_.objective_factor();
+    result.scaled_residual = result.residual;
+    if (result.status == Status::acceptable && result.residual.max_scaled() <= options_.tolerance) result.status = Status::solved;
+    if (result.status == Status::invalid_start) return;
+    problem_.prepare(point.x, workspace_);
+    problem_.gradient(point.x, workspace_, gradient_);
+    problem_.constraints(point.x, workspace_, rows_);
+    problem_.jacobian(point.x, workspace_, values_of(jacobian_));
+    gradient_ += point.z;
+    gradient_.noalias() += jacobian_.transpose() * point.lambda;
+    rows_ -= bounds_.compliance.cwiseProduct(point.lambda - bounds_.preload);
+    result.residual = kkt_residual(point, bounds_, gradient_, rows_);
+  }
+
+  // Where the scale is moderate, the problem meets the tolerance in its own units too: that of the scaled problem is tightened by as much.
+  static constexpr double kMostTightened = 1e-2;
+
   const Nlp& problem_;
+  Options options_;
   Bounds bounds_;
+  ScaledNlp scaled_;
   NewtonKkt<Nlp> solver_;
+  bool chosen_ = false;
+
+  Nlp::Workspace workspace_;  // of the problem itself: what its scale and its ruler read
+  Vector gradient_, rows_, beside_;
+  SparseMatrix jacobian_;
 };
 
 }  // namespace
 
 std::unique_ptr<Solver> make_newton_kkt(const Nlp& problem, const Options& options) {
   validate(options);
+  refuse_soft_rows(problem);
   return std::make_unique<SparseNewtonKkt>(problem, options);
 }
 
 SolverDescription describe_newton_kkt() {
-  return {"newton-kkt", "primal-dual interior point with filter line search, tenon's own", true, "exact Hessian, multifrontal LDL'"};
+  return {"newton-kkt", "primal-dual interior point with filter line search, tenon's own", true,
+          "exact Hessian, multifrontal LDL', gradient-based scaling"};
 }
 
 }  // namespace tenon

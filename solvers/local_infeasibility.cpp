@@ -1,24 +1,9 @@
-#include "tenon/solvers/first_order.hpp"
+#include "tenon/solvers/local_infeasibility.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "tenon/solvers/adapter.hpp"
-
 namespace tenon {
-
-FirstOrder::FirstOrder(const Nlp& problem, const Vector& x)
-    : gradient(problem.num_variables()), constraints(problem.num_constraints()), jacobian(problem.jacobian_pattern().zero_matrix()) {
-  PreparedNlp evaluate(problem);
-  objective = evaluate.objective(x);
-  evaluate.gradient(x, gradient);
-  evaluate.constraints(x, constraints);
-  evaluate.jacobian(x, values_of(jacobian));
-}
-
-bool FirstOrder::all_finite() const {
-  return std::isfinite(objective) && gradient.allFinite() && constraints.allFinite() && jacobian.coeffs().allFinite();
-}
 
 Vector signed_violation(const Vector& constraints, const Bounds& bounds) {
   return (constraints - bounds.c_upper).cwiseMax(0) + (constraints - bounds.c_lower).cwiseMin(0);

@@ -1,21 +1,9 @@
-// What first-order conditions are made of, at one x, and what can be read off it without multipliers.
+// What can be read off first-order quantities without multipliers: whether a point is where the violation of the rows gets no smaller.
 #pragma once
 
-#include "tenon/core/nlp.hpp"
+#include "tenon/core/first_order.hpp"
 
 namespace tenon {
-
-struct FirstOrder {
-  double objective;
-  Vector gradient;        // n
-  Vector constraints;     // m
-  SparseMatrix jacobian;  // m x n
-
-  /// Evaluates afresh. Allocates.
-  FirstOrder(const Nlp& problem, const Vector& x);
-
-  bool all_finite() const;
-};
 
 /// How far each row lies above its upper bound (> 0) or below its lower one (< 0).
 Vector signed_violation(const Vector& constraints, const Bounds& bounds);

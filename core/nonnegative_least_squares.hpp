@@ -1,0 +1,13 @@
+// min |A y - b|_2  s.t.  y >= 0,  by active sets.
+//
+// [LH74] C. L. Lawson, R. J. Hanson, Solving Least Squares Problems, Prentice-Hall (1974), algorithm NNLS, chapter 23.
+#pragma once
+
+#include "tenon/core/eigen.hpp"
+
+namespace tenon {
+
+/// The minimiser y. The columns of A where y > 0 are linearly independent. Columns of one size are best.
+Vector nonnegative_least_squares(const Eigen::MatrixXd& A, const Vector& b);
+
+}  // namespace tenon
