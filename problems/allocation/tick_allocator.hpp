@@ -40,7 +40,7 @@ class TickAllocator final : public Allocator {
   TickAllocator(const Vehicle& vehicle, const Options& options, Make&& make)
       : linear_(vehicle),
         problem_(vehicle),
-        solver_(make(std::as_const(problem_), with_warm_start(options, true, kMaxWarmIterations))),
+        solver_(make(std::as_const(problem_), with_warm_start(options, true, vehicle.hard_limits ? kMaxHardIterations : kMaxSoftIterations))),
         rescue_(make(std::as_const(problem_), with_warm_start(options, false, kMaxIterations))),
         hard_limits_(vehicle.hard_limits) {
     for (int i = 0; i < N; ++i) {
@@ -113,7 +113,12 @@ class TickAllocator final : public Allocator {
     problem_.set_wrench_stiffness(1);
     problem_.set_effort_scale(kFaintEffort);
     start_at_branch(wrench, dt);
-    const bool usable = attempt(rescue_);
+    bool usable = attempt(rescue_);
+    if (!usable && has_previous_) {
+      start_at_branch(wrench, dt);
+      point_.x.template tail<N>() = previous_;
+      usable = attempt(rescue_);
+    }
     problem_.set_effort_scale(1);
     if (!usable) return false;
     if (!nearly_met()) return judge(wrench);
@@ -244,7 +249,7 @@ class TickAllocator final : public Allocator {
   }
 
   static constexpr int kMaxIterations = 60;
-  static constexpr int kMaxWarmIterations = 14;
+  static constexpr int kMaxHardIterations = 10, kMaxSoftIterations = 14;  // of the first attempt
   static constexpr int kMaxSettlings = 3;
   static constexpr double kSettling = 0.1;           // what is out of reach does not settle
   static constexpr double kStiffness = 1e6;          // an attainable wrench gives way by 1e-6 times the change of the multipliers

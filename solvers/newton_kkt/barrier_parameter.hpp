@@ -47,10 +47,15 @@ class BarrierParameter {
     return true;
   }
 
-  /// Free: mu for products whose mean is `gap` now and would be `affine` after the affine step.
-  void choose(Scalar gap, Scalar affine) {
+  /// Free: mu for products whose mean is `gap` now and would be `affine` after the affine step, but not below `least` without need.
+  void choose(Scalar gap, Scalar affine, Scalar least) {
     const Scalar ratio = affine / gap;
-    mu_ = std::max(smallest_, std::min(ratio * ratio * ratio, kMaxSigma) * gap);
+    mu_ = std::max({smallest_, std::min(least, gap), std::min(ratio * ratio * ratio, kMaxSigma) * gap});
+  }
+
+  /// Walls that close while the violation, or the whole error, is still large leave no way round curved rows.
+  Scalar tether(Scalar primal, Scalar error) const {
+    return kTether * std::min(kMostTethered, std::max(primal, error * std::sqrt(error)));
   }
 
   /// Free, where all products are about the smallest mu: no affine step is needed to choose.
@@ -75,6 +80,7 @@ class BarrierParameter {
  private:
   static constexpr Scalar kKappaEpsilon = 10, kKappaMu = Scalar(0.2), kThetaMu = Scalar(1.5);
   static constexpr Scalar kFall = Scalar(0.9999), kHold = Scalar(0.8), kMaxSigma = 100;
+  static constexpr Scalar kTether = Scalar(0.01), kMostTethered = 10;
 
   Scalar mu_ = 0, smallest_ = 0;
   bool free_ = false;

@@ -21,9 +21,12 @@ class Filter {
     return true;
   }
 
-  /// Forbids what is not better than this point by the margins gamma_theta = 1e-5, gamma_phi = 1e-8 of its violation.
+  // [WB06] has gamma_phi = 1e-8, with which phi may pay for a violation that grows and grows where f is flat (hs057)
+  static constexpr Scalar kGammaTheta = Scalar(1e-5), kGammaPhi = Scalar(1e-6);
+
+  /// Forbids what is not better than this point by the margins gamma_theta, gamma_phi of its violation.
   void add(Scalar theta, Scalar phi) {
-    const Entry entry{(1 - Scalar(1e-5)) * theta, phi - Scalar(1e-8) * theta};
+    const Entry entry{(1 - kGammaTheta) * theta, phi - kGammaPhi * theta};
     int kept = 0;
     for (int k = 0; k < size_; ++k) {
       const bool dominated = entries_[k].theta >= entry.theta && entries_[k].phi >= entry.phi;

@@ -60,7 +60,7 @@ class FilterLineSearch {
   }
 
  private:
-  static constexpr Scalar kGammaTheta = Scalar(1e-5), kGammaPhi = Scalar(1e-8), kEtaPhi = Scalar(1e-8), kDelta = 1;
+  static constexpr Scalar kGammaTheta = Filter<Scalar>::kGammaTheta, kGammaPhi = Filter<Scalar>::kGammaPhi, kEtaPhi = Scalar(1e-8), kDelta = 1;
   static constexpr Scalar kGammaAlpha = Scalar(0.05), kKappaSoc = Scalar(0.99);
   static constexpr Scalar kErrorFall = Scalar(0.9), kNearSolution = Scalar(1e-2);
   static constexpr int kMaxCorrections = 4;

@@ -141,7 +141,8 @@ class NewtonKkt {
   /// once where the iterate allows it.
   void update_barrier() {
     if (barrier_.sides() == 0) return;
-    const bool falls = tiny_steps_ == 0 && !(mu_.at_end() && !mu_.is_free()) && mu_.falls(error_.max_scaled());
+    const bool cramped = tiny_steps_ > 0 || (iterations_ > 0 && alpha_.primal < kCramped);
+    const bool falls = !cramped && !(mu_.at_end() && !mu_.is_free()) && mu_.falls(error_.max_scaled());
     if (mu_.is_free()) {
       if (!falls) mu_.go_monotone(barrier_.mean_complementarity(*now_));
       new_barrier_problem();
@@ -184,7 +185,8 @@ class NewtonKkt {
     }
     system_.step(barrier_, *now_, 0, step_);
     const StepLengths<Scalar> affine = barrier_.max_steps(*now_, step_, 1);
-    mu_.choose(gap, barrier_.mean_complementarity_after(*now_, step_, affine));
+    mu_.choose(gap, barrier_.mean_complementarity_after(*now_, step_, affine),
+               barrier_.all_rows_compliant() ? 0 : mu_.tether(error_.primal, error_.max_scaled()));
     if (affine.min() < kFar || system_.regularization() > 0) return false;
     system_.predicted_step(barrier_, *now_, mu_.value(), step_);
     return true;
@@ -298,7 +300,8 @@ class NewtonKkt {
   double elapsed() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
 
   static constexpr Scalar kWall = Scalar(0.3), kRecentre = Scalar(1e-3);
-  static constexpr Scalar kFar = Scalar(0.3);
+  static constexpr Scalar kCramped = Scalar(1e-3);
+  static constexpr Scalar kFar = Scalar(0.1);
   static constexpr Scalar kDivergence = Scalar(1e20);
   static constexpr Scalar kRestored = Scalar(0.9);   // kappa_resto of [WB06, sec. 3.3]
 
