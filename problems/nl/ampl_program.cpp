@@ -15,13 +15,16 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <limits>
+#include <new>
 #include <utility>
 
 #include "tenon/core/input_error.hpp"
 #include "tenon/core/output_file.hpp"
+#include "tenon/problems/nl/nl_scan.hpp"
 
 // The library's names are macros, so it comes last.
 #include <asl_pfgh.h>
@@ -30,12 +33,19 @@
 #undef printf
 #undef fprintf
 
+/// In place of the library's own allocator: zeroed memory. Its reader leaves some members of min, max and if unset where these stand in
+/// conditions, and reads them later on.
+extern "C" void* mymalloc(size_t size) {
+  void* const memory = std::calloc(std::max<size_t>(size, 1), 1);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+
 namespace tenon {
 
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kAbsent = 1e19;  // a bound that large is none, as all solvers of .nl files have it
 
 /// The sign of a place where something cannot be evaluated.
 template <class Values>
@@ -48,7 +58,7 @@ double* data_of(ConstVectorRef x) {
 }
 
 double bound_of(double value) {
-  return std::abs(value) >= kAbsent ? std::copysign(kInfinity<double>, value) : value;
+  return std::abs(value) >= kNlNoBound ? std::copysign(kInfinity<double>, value) : value;
 }
 
 /// The bytes as a file under a name of its own, gone when this goes: the library opens files by name, and shall see what was checked.
@@ -271,6 +281,10 @@ class AmplProgram final : public Nlp {
 };
 
 }  // namespace
+
+bool nl_files_are_available() {
+  return true;
+}
 
 NlFile make_ampl_program(const std::string& bytes, const std::string& path, NlNames names, int objective) {
   auto program = std::make_unique<AmplProgram>(bytes, path, std::move(names), objective);

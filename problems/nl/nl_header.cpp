@@ -30,7 +30,7 @@ void refuse(NlTokens& tokens, int count, const std::string& what) {
 char read_first_line(NlTokens& tokens, NlHeader& header) {
   const char letter = tokens.key("g or b, the kind of file");
   if (letter != 'g' && letter != 'b' && letter != 'z') {
-    tokens.fail("this is no .nl file: it begins with byte " + std::to_string(static_cast<unsigned char>(letter)), "g for text, b for binary");
+    tokens.fail("this is no .nl file: it begins with " + shown(letter), "g for text, b for binary");
   }
   const int count = tokens.integer("the count of options", 0, kMostOptions);
   while (static_cast<int>(header.options.size()) < count && tokens.has_word()) {

@@ -41,6 +41,10 @@ Value from_bytes(std::string_view bytes) {
 
 }  // namespace
 
+std::string shown(char key) {
+  return key > ' ' && key <= '~' ? std::string("'") + key + "'" : "byte " + std::to_string(static_cast<unsigned char>(key));
+}
+
 void NlTokens::fail(const std::string& what_is_wrong, const std::string& expected) const {
   if (binary_) throw InputError({place_.file, 0, 0}, "byte " + std::to_string(word_ + 1) + ": " + what_is_wrong, expected);
   throw InputError(place_, what_is_wrong, expected);
