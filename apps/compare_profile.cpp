@@ -124,8 +124,8 @@ int compare_profile(const Arguments& arguments) {
                  fmt::format("{:.0f} %", 100 * by_iterations.shares[s].front())});
   }
   if (!arguments.quiet) {
-    fmt::print("{}: {} problems, tolerance {}, at most {} s each\n{}in {}.csv, {}.svg, {}_problems.csv\n", arguments.profile, problems.size(),
-               options.tolerance, options.time_limit, summary.text(), stem, stem, stem);
+    fmt::print("{}: {} problems, tolerance {}, at most {} s each\n{}in {}.csv, {}.svg, {}_problems.csv\n", arguments.profile,
+               problems.size(), options.tolerance, options.time_limit, summary.text(), stem, stem, stem);
   }
   return kFinished;
 }

@@ -1,6 +1,7 @@
 // .nl files on the command line: solve, check and compare; the AMPL protocol, its answer read back; dumps that fail again; profiles.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <sstream>
 

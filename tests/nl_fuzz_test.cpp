@@ -106,7 +106,7 @@ TEST_F(Fuzz, AnyNumberChanged) {
   const std::string characters = "0123456789.-e onvCJkbrx\n#\t\r";
   for (const char* name : kText) {
     const std::string whole = nl_text(name);
-    for (int repetition = 0; repetition < 8; ++repetition) {
+    for (int repetition = 0; repetition < 4; ++repetition) {
       for (std::size_t k = 0; k < whole.size(); ++k) {
         std::string broken = whole;
         broken[k] = characters[random() % characters.size()];
@@ -121,7 +121,7 @@ TEST_F(Fuzz, AnyNumberChanged) {
 TEST_F(Fuzz, AnyByteOfABinaryFileChanged) {
   std::mt19937 random(2);
   const std::string whole = nl_text("garden_binary");
-  for (int repetition = 0; repetition < 20; ++repetition) {
+  for (int repetition = 0; repetition < 6; ++repetition) {
     for (std::size_t k = 0; k < whole.size(); ++k) {
       std::string broken = whole;
       broken[k] = static_cast<char>(repetition == 0 ? whole[k] ^ 1 : repetition == 1 ? '\xff' : static_cast<int>(random() % 256));

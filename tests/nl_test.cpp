@@ -1,7 +1,11 @@
 // .nl files: what they say arrives as they say it, what this program does not take is refused by name, and .sol answers in AMPL's sign.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
+#include <map>
 #include <random>
 
 #include "tenon/core/check_derivatives.hpp"

@@ -6,7 +6,8 @@
 // The library keeps the values of all expressions at one x inside its own object, which is thus the one workspace of all evaluations: they
 // give the same numbers in any order, but not from two threads at once. Three of its ways are minded here: it believes what it reads (so
 // the scan comes first), it ends the program where an evaluation fails unless it is told to return, and its Hessian is that of the x at
-// which f, c and their derivatives were evaluated last.
+// which f, c and their derivatives were evaluated last. One fault remains: where min, max or if choose among plain numbers, its Hessian may
+// lack entries (version of 2019). The gradients are right there, so that answers are too; a solve may take more steps.
 // Source: D. M. Gay, Hooking Your Solver to AMPL, Bell Laboratories report 97-4-06.
 #include "tenon/problems/nl/ampl_program.hpp"
 

@@ -131,7 +131,8 @@ class Reader {
   void push(const NlOperator& op, int operands) { pending_.push_back({&op, operands, is_choice_}); }
 
   int read_count(int fewest) {
-    const int count = tokens_.integer("the count of operands", fewest, static_cast<int>(std::min<std::size_t>(tokens_.bytes_left(), 1u << 30)));
+    const int most = static_cast<int>(std::min<std::size_t>(tokens_.bytes_left(), 1u << 30));  // each takes a byte or more
+    const int count = tokens_.integer("the count of operands", fewest, most);
     tokens_.end_line();
     return count;
   }
@@ -146,7 +147,8 @@ class Reader {
       if (k > 1 && value <= last_breakpoint) tokens_.fail("the breakpoints do not rise", "each greater than the one before");
       last_breakpoint = value;
     }
-    if (tokens_.key("the variable of a piecewise linear term") != 'v') tokens_.fail("no variable", "the variable of a piecewise linear term");
+    constexpr const char* kVariable = "the variable of a piecewise linear term";
+    if (tokens_.key(kVariable) != 'v') tokens_.fail("no variable", kVariable);
     read_variable(NlKind::number);
     if (found_.indices.back() >= scope_.variables) {
       tokens_.fail("a piecewise linear term of a common expression", "of a variable: the library's derivative is wrong elsewhere");

@@ -23,7 +23,8 @@ std::vector<int> read_counts(NlTokens& tokens, std::size_t fewest, std::size_t m
 
 /// Every count of this line must be 0: the program does not take such a thing.
 void refuse(NlTokens& tokens, int count, const std::string& what) {
-  if (count > 0) tokens.fail("the problem has " + what + " (" + std::to_string(count) + ")", "a problem with real variables and smooth rows");
+  if (count == 0) return;
+  tokens.fail("the problem has " + what + " (" + std::to_string(count) + ")", "a problem with real variables and smooth rows");
 }
 
 /// The first line: `g3 1 1 0 # problem name`. Returns its letter.

@@ -256,7 +256,8 @@ class Scanner {
     }
     for (const Function& objective : objectives_) gradient += static_cast<int>(objective.linear.size());
     const auto compare = [&](int found, int said, const char* what) {
-      if (found != said) tokens_.fail("there are " + std::to_string(found) + " non-zeros of the " + what, std::to_string(said) + ", as the head says");
+      if (found == said) return;
+      tokens_.fail("there are " + std::to_string(found) + " non-zeros of the " + what, std::to_string(said) + ", as the head says");
     };
     compare(jacobian, head_.jacobian_nonzeros, "Jacobian");
     compare(gradient, head_.gradient_nonzeros, "gradients");

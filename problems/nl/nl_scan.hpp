@@ -1,7 +1,7 @@
 // The whole grammar of a .nl file, checked before the solver library sees it: that library trusts what it reads.
 //
-//     head, then segments in any order:  b r k x d  (bounds, rows, column counts, start, multipliers)   C O V  (expressions)
-//                                        J G  (linear terms)   S  (suffixes)
+//     head, then segments in any order but k before J:  b r k x d  (bounds, rows, column counts, start, multipliers)
+//                                                       C O V  (expressions)   J G  (linear terms)   S  (suffixes)
 //
 // What passes is safe to hand over: every count agrees with the head, every index is in range, every row, bound, objective
 // and common expression is there, none twice, and each row's linear part has a place for every variable of its expression.

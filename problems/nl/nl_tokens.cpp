@@ -101,8 +101,8 @@ int NlTokens::operator_code(int at_most) {
 
 int NlTokens::within(int value, const char* what, int at_least, int at_most) const {
   if (value >= at_least && value <= at_most) return value;
-  fail("found " + std::to_string(value),
-       what + (at_least > at_most ? std::string(", but none is left") : " from " + std::to_string(at_least) + " to " + std::to_string(at_most)));
+  const std::string range = " from " + std::to_string(at_least) + " to " + std::to_string(at_most);
+  fail("found " + std::to_string(value), what + (at_least > at_most ? ", but there is none" : range));
 }
 
 double NlTokens::number(const char* what) {
