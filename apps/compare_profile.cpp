@@ -116,7 +116,7 @@ int compare_profile(const Arguments& arguments) {
   curves.finish();
   table.finish();
   write_picture(stem + ".svg", fmt::format("{} problems, tolerance {}", problems.size(), options.tolerance),
-                {{"time", by_time}, {"iterations", by_iterations}});
+                {{"problems solved, by time", by_time}, {"problems solved, by iterations", by_iterations}});
 
   Table summary({"solver", "solved", "fastest", "fewest iterations"});
   for (std::size_t s = 0; s < names.size(); ++s) {
@@ -124,8 +124,8 @@ int compare_profile(const Arguments& arguments) {
                  fmt::format("{:.0f} %", 100 * by_iterations.shares[s].front())});
   }
   if (!arguments.quiet) {
-    fmt::print("{}: {} problems, tolerance {}, at most {} s each\n{}in {}.csv, {}.svg, {}_problems.csv\n", arguments.profile, problems.size(),
-               options.tolerance, options.time_limit, summary.text(), stem, stem, stem);
+    fmt::print("{}: {} problems, tolerance {}, at most {} s each\n{}in {}.csv, {}.svg, {}_problems.csv\n", arguments.profile,
+               problems.size(), options.tolerance, options.time_limit, summary.text(), stem, stem, stem);
   }
   return kFinished;
 }

@@ -20,8 +20,8 @@ constexpr double kWidestRatio = 1 << 14;  // further out nothing is drawn: the c
 struct Pen {
   std::string_view color, dash;
 };
-constexpr Pen kPens[] = {{"#0072b2", ""},    {"#d55e00", "8 3"},     {"#009e73", "2 3"},
-                         {"#cc79a7", "10 3 2 3"}, {"#e69f00", "5 5"}, {"#56b4e9", "1 4"}, {"#000000", "12 4"}};
+constexpr Pen kPens[] = {{"#0072b2", ""},    {"#d55e00", "8 3"}, {"#009e73", "2 3"}, {"#cc79a7", "10 3 2 3"},
+                         {"#e69f00", "5 5"}, {"#56b4e9", "3 2"}, {"#000000", "12 4"}};
 
 const Pen& pen(std::size_t s) {
   return kPens[s % std::size(kPens)];

@@ -6,7 +6,8 @@
 // The library keeps the values of all expressions at one x inside its own object, which is thus the one workspace of all evaluations: they
 // give the same numbers in any order, but not from two threads at once. Three of its ways are minded here: it believes what it reads (so
 // the scan comes first), it ends the program where an evaluation fails unless it is told to return, and its Hessian is that of the x at
-// which f, c and their derivatives were evaluated last.
+// which f, c and their derivatives were evaluated last. One fault remains: where min, max or if choose among plain numbers, its Hessian may
+// lack entries (version of 2019). The gradients are right there, so that answers are too; a solve may take more steps.
 // Source: D. M. Gay, Hooking Your Solver to AMPL, Bell Laboratories report 97-4-06.
 #include "tenon/problems/nl/ampl_program.hpp"
 
@@ -15,13 +16,16 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <limits>
+#include <new>
 #include <utility>
 
 #include "tenon/core/input_error.hpp"
 #include "tenon/core/output_file.hpp"
+#include "tenon/problems/nl/nl_scan.hpp"
 
 // The library's names are macros, so it comes last.
 #include <asl_pfgh.h>
@@ -30,12 +34,19 @@
 #undef printf
 #undef fprintf
 
+/// In place of the library's own allocator: zeroed memory. Its reader leaves some members of min, max and if unset where these stand in
+/// conditions, and reads them later on.
+extern "C" void* mymalloc(size_t size) {
+  void* const memory = std::calloc(std::max<size_t>(size, 1), 1);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+
 namespace tenon {
 
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kAbsent = 1e19;  // a bound that large is none, as all solvers of .nl files have it
 
 /// The sign of a place where something cannot be evaluated.
 template <class Values>
@@ -48,7 +59,7 @@ double* data_of(ConstVectorRef x) {
 }
 
 double bound_of(double value) {
-  return std::abs(value) >= kAbsent ? std::copysign(kInfinity<double>, value) : value;
+  return std::abs(value) >= kNlNoBound ? std::copysign(kInfinity<double>, value) : value;
 }
 
 /// The bytes as a file under a name of its own, gone when this goes: the library opens files by name, and shall see what was checked.
@@ -271,6 +282,10 @@ class AmplProgram final : public Nlp {
 };
 
 }  // namespace
+
+bool nl_files_are_available() {
+  return true;
+}
 
 NlFile make_ampl_program(const std::string& bytes, const std::string& path, NlNames names, int objective) {
   auto program = std::make_unique<AmplProgram>(bytes, path, std::move(names), objective);

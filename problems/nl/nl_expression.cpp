@@ -16,6 +16,8 @@ constexpr std::array<NlOperator, kNlOperators> kOperators = nl_operators();
 struct Pending {
   const NlOperator* of;
   int left;
+  bool is_choice;             // of an operator that branches
+  bool has_variable = false;  // in the operands so far
 };
 
 /// What follows the key of a constant. Short ones save room in binary files.
@@ -28,7 +30,7 @@ double read_constant(NlTokens& tokens, char key) {
   else if (key == 'l' && tokens.is_binary())
     value = tokens.integer("an integer", -2147483647 - 1, 2147483647);
   else
-    tokens.fail("found '" + std::string(1, key) + "'", "a number: n, or in binary s or l");
+    tokens.fail("found " + shown(key), "a number: n, or in binary s or l");
   tokens.end_line();
   return value;
 }
@@ -40,7 +42,7 @@ class Reader {
   NlReferences read() {
     do {
       read_node();
-      while (!pending_.empty() && pending_.back().left == 0) pending_.pop_back();
+      while (!pending_.empty() && pending_.back().left == 0) close();
     } while (!pending_.empty());
     std::sort(found_.indices.begin(), found_.indices.end());
     found_.indices.erase(std::unique(found_.indices.begin(), found_.indices.end()), found_.indices.end());
@@ -50,15 +52,28 @@ class Reader {
  private:
   /// What the next operand is to be; takes it off the count.
   NlKind next_kind() {
+    is_choice_ = false;
     if (pending_.empty()) return NlKind::number;
     Pending& waiting = pending_.back();
     const bool is_condition = waiting.of->shape == NlShape::choice && waiting.left == 3;
     --waiting.left;
+    is_choice_ = waiting.of->branches && !is_condition;
     return is_condition ? NlKind::truth : waiting.of->operand;
+  }
+
+  /// The innermost operator has all its operands.
+  void close() {
+    const Pending closed = pending_.back();
+    pending_.pop_back();
+    if (closed.is_choice && !closed.has_variable) {
+      tokens_.fail("a constant expression as a choice of min, max or if", "a number in its place");
+    }
+    if (!pending_.empty() && closed.has_variable) pending_.back().has_variable = true;
   }
 
   void read_node() {
     const bool is_whole = pending_.empty();
+    const std::size_t begin = tokens_.offset();
     const NlKind wanted = next_kind();
     const char key = tokens_.key("an expression: n, v or o");
     switch (key) {
@@ -68,11 +83,14 @@ class Reader {
         read_constant(tokens_, key);
         found_.is_constant = is_whole;
         return;
-      case 'v': return read_variable(wanted);
+      case 'v':
+        read_variable(wanted);
+        if (is_choice_) found_.lone_choices.push_back({begin, tokens_.offset()});
+        return;
       case 'o': return read_operator(wanted);
       case 'f': tokens_.fail("an imported function is called", "a problem without imported functions");
       case 'h': tokens_.fail("a string", "an expression of numbers");
-      default: tokens_.fail("found '" + std::string(1, key) + "'", "an expression: n, v or o");
+      default: tokens_.fail("found " + shown(key), "an expression: n, v or o");
     }
   }
 
@@ -85,6 +103,7 @@ class Reader {
     }
     tokens_.end_line();
     found_.indices.push_back(index);
+    if (!pending_.empty()) pending_.back().has_variable = true;
   }
 
   void read_operator(NlKind wanted) {
@@ -109,10 +128,11 @@ class Reader {
     }
   }
 
-  void push(const NlOperator& op, int operands) { pending_.push_back({&op, operands}); }
+  void push(const NlOperator& op, int operands) { pending_.push_back({&op, operands, is_choice_}); }
 
   int read_count(int fewest) {
-    const int count = tokens_.integer("the count of operands", fewest, static_cast<int>(std::min<std::size_t>(tokens_.bytes_left(), 1u << 30)));
+    const int most = static_cast<int>(std::min<std::size_t>(tokens_.bytes_left(), 1u << 30));  // each takes a byte or more
+    const int count = tokens_.integer("the count of operands", fewest, most);
     tokens_.end_line();
     return count;
   }
@@ -127,13 +147,18 @@ class Reader {
       if (k > 1 && value <= last_breakpoint) tokens_.fail("the breakpoints do not rise", "each greater than the one before");
       last_breakpoint = value;
     }
-    if (tokens_.key("the variable of a piecewise linear term") != 'v') tokens_.fail("no variable", "the variable of a piecewise linear term");
+    constexpr const char* kVariable = "the variable of a piecewise linear term";
+    if (tokens_.key(kVariable) != 'v') tokens_.fail("no variable", kVariable);
     read_variable(NlKind::number);
+    if (found_.indices.back() >= scope_.variables) {
+      tokens_.fail("a piecewise linear term of a common expression", "of a variable: the library's derivative is wrong elsewhere");
+    }
   }
 
   NlTokens& tokens_;
   const NlScope& scope_;
   std::vector<Pending> pending_;
+  bool is_choice_ = false;  // the node that is read now
   NlReferences found_;
 };
 

@@ -35,7 +35,8 @@ NlFile read_nl(const std::string& path, int objective) {
 }
 
 NlFile parse_nl(const std::string& bytes, const std::string& path, int objective) {
-  const NlHeader header = scan_nl(bytes, path);
+  const NlScan scan = scan_nl(bytes, path);
+  const NlHeader& header = scan.header;
   if (objective < 0 || (objective > header.objectives && objective != 1)) {
     throw std::invalid_argument(path + ": there is no objective " + std::to_string(objective) + " (expected 0 to " +
                                 std::to_string(header.objectives) + ")");
@@ -43,7 +44,7 @@ NlFile parse_nl(const std::string& bytes, const std::string& path, int objective
   const std::filesystem::path file(path);
   NlNames names{file.stem().string(), read_names(std::filesystem::path(file).replace_extension(".col"), header.variables),
                 read_names(std::filesystem::path(file).replace_extension(".row"), header.constraints)};
-  NlFile made = make_ampl_program(bytes, path, std::move(names), std::min(objective, header.objectives));
+  NlFile made = make_ampl_program(scan.bytes, path, std::move(names), std::min(objective, header.objectives));
   made.options = header.options;
   made.boundary_tolerance = header.boundary_tolerance;
   return made;

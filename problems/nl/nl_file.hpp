@@ -21,6 +21,9 @@ struct NlFile {
   double boundary_tolerance = 0;  // likewise, where options[1] is 3
 };
 
+/// Whether the AMPL solver library was there at the time of the build; without it the functions below refuse every good file.
+bool nl_files_are_available();
+
 /// Reads PATH with the objective of that number (from 1; 0: none, any feasible point will do). Throws InputError where the file cannot be
 /// read or does not make sense, std::invalid_argument where it has no such objective, or where the AMPL solver library was absent at the
 /// time of the build.

@@ -23,14 +23,15 @@ std::vector<int> read_counts(NlTokens& tokens, std::size_t fewest, std::size_t m
 
 /// Every count of this line must be 0: the program does not take such a thing.
 void refuse(NlTokens& tokens, int count, const std::string& what) {
-  if (count > 0) tokens.fail("the problem has " + what + " (" + std::to_string(count) + ")", "a problem with real variables and smooth rows");
+  if (count == 0) return;
+  tokens.fail("the problem has " + what + " (" + std::to_string(count) + ")", "a problem with real variables and smooth rows");
 }
 
 /// The first line: `g3 1 1 0 # problem name`. Returns its letter.
 char read_first_line(NlTokens& tokens, NlHeader& header) {
   const char letter = tokens.key("g or b, the kind of file");
   if (letter != 'g' && letter != 'b' && letter != 'z') {
-    tokens.fail("this is no .nl file: it begins with byte " + std::to_string(static_cast<unsigned char>(letter)), "g for text, b for binary");
+    tokens.fail("this is no .nl file: it begins with " + shown(letter), "g for text, b for binary");
   }
   const int count = tokens.integer("the count of options", 0, kMostOptions);
   while (static_cast<int>(header.options.size()) < count && tokens.has_word()) {

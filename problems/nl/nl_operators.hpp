@@ -24,7 +24,8 @@ struct NlOperator {
   NlShape shape = NlShape::unknown;
   NlKind operand = NlKind::number;
   NlKind result = NlKind::number;
-  int fewest = 0;  // operands of a list
+  int fewest = 0;        // operands of a list
+  bool branches = false; // its value is one of its operands
 };
 
 inline constexpr int kNlOperators = 76;
@@ -41,8 +42,8 @@ constexpr std::array<NlOperator, kNlOperators> nl_operators() {
   table[4] = {"mod", binary};
   table[5] = {"^", binary};
   table[6] = {"less", binary};
-  table[11] = {"min", list, number, number, 1};
-  table[12] = {"max", list, number, number, 1};
+  table[11] = {"min", list, number, number, 1, true};
+  table[12] = {"max", list, number, number, 1, true};
   table[13] = {"floor", unary};
   table[14] = {"ceil", unary};
   table[15] = {"abs", unary};
@@ -56,7 +57,7 @@ constexpr std::array<NlOperator, kNlOperators> nl_operators() {
   table[29] = {">", binary, number, truth};
   table[30] = {"!=", binary, number, truth};
   table[34] = {"not", unary, truth, truth};
-  table[35] = {"if", choice};
+  table[35] = {"if", choice, number, number, 0, true};
   table[37] = {"tanh", unary};
   table[38] = {"tan", unary};
   table[39] = {"sqrt", unary};
@@ -75,10 +76,10 @@ constexpr std::array<NlOperator, kNlOperators> nl_operators() {
   table[52] = {"acosh", unary};
   table[53] = {"acos", unary};
   table[54] = {"sum", list, number, number, 3};
-  table[55] = {"div", binary};
-  table[56] = {"precision", binary};
-  table[57] = {"round", binary};
-  table[58] = {"trunc", binary};
+  table[55] = {"div", refused};
+  table[56] = {"precision", refused};
+  table[57] = {"round", refused};
+  table[58] = {"trunc", refused};
   table[59] = {"count", refused};
   table[60] = {"numberof", refused};
   table[61] = {"numberof of symbols", refused};

@@ -1,6 +1,7 @@
 #include "tenon/problems/nl/nl_scan.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -20,17 +21,19 @@ struct Function {
 class Scanner {
  public:
   Scanner(std::string_view bytes, const std::string& file)
-      : tokens_(bytes, file),
+      : bytes_(bytes),
+        tokens_(bytes, file),
         head_(read_nl_header(tokens_)),
         rows_(size(head_.constraints)),
         objectives_(size(head_.objectives)),
         common_(size(head_.common_expressions)),
         visited_(size(head_.variables + head_.common_expressions), 0) {}
 
-  NlHeader scan() {
+  NlScan scan() {
     while (!tokens_.at_end()) read_segment();
     check_complete();
-    return std::move(head_);
+    std::string bytes = bytes_for_library();
+    return {std::move(head_), std::move(bytes)};
   }
 
  private:
@@ -55,7 +58,7 @@ class Scanner {
       case 'S': return read_suffix();
       case 'F': tokens_.fail("an imported function", "a problem without imported functions");
       case 'L': tokens_.fail("a logical constraint", "a problem with real variables and smooth rows");
-      default: tokens_.fail("no segment begins with byte " + std::to_string(static_cast<unsigned char>(key)), "one of C O V b r k x d J G S");
+      default: tokens_.fail("no segment begins with " + shown(key), "one of C O V b r k x d J G S");
     }
   }
 
@@ -68,6 +71,15 @@ class Scanner {
     return tokens_.integer(what, 0, count - 1);
   }
 
+  /// A lower bound (side 1), an upper one (-1) or both (0); beyond kNlNoBound it is none, but not on the wrong side.
+  double read_bound(int side) {
+    const double value = tokens_.number("a bound");
+    if ((side >= 0 && value >= kNlNoBound) || (side <= 0 && value <= -kNlNoBound)) {
+      tokens_.fail("nothing can meet a bound so far out", "a bound within 1e19, or none");
+    }
+    return value;
+  }
+
   /// One line for each: 0 lower upper, 1 upper, 2 lower, 3 (free), 4 value.
   void read_bounds(int count, const std::string& of) {
     tokens_.end_line();
@@ -75,18 +87,16 @@ class Scanner {
       const char kind = tokens_.key("the kind of a bound, 0 to 4");
       switch (kind) {
         case '0': {
-          const double lower = tokens_.number("a lower bound"), upper = tokens_.number("an upper bound");
-          if (lower > upper) {
-            tokens_.fail("the lower bound " + of + " is above the upper one", "lower <= upper");
-          }
+          const double lower = read_bound(1), upper = read_bound(-1);
+          if (lower > upper) tokens_.fail("the lower bound " + of + " is above the upper one", "lower <= upper");
           break;
         }
-        case '1': tokens_.number("an upper bound"); break;
-        case '2': tokens_.number("a lower bound"); break;
+        case '1': read_bound(-1); break;
+        case '2': read_bound(1); break;
         case '3': break;
-        case '4': tokens_.number("a value"); break;
+        case '4': read_bound(0); break;
         case '5': tokens_.fail("a complementarity condition", "a problem with real variables and smooth rows");
-        default: tokens_.fail("a bound " + of + " begins with byte " + std::to_string(static_cast<unsigned char>(kind)), "its kind, 0 to 4");
+        default: tokens_.fail("a bound " + of + " begins with " + shown(kind), "its kind, 0 to 4");
       }
       tokens_.end_line();
     }
@@ -119,7 +129,7 @@ class Scanner {
   void read_expression(Function& function, bool may_be_nonlinear, const char* what) {
     if (function.is_read) tokens_.fail(std::string(what) + " stands twice", "it once");
     function.is_read = true;
-    function.nonlinear = read_nl_expression(tokens_, scope(head_.variables + head_.common_expressions));
+    function.nonlinear = read_expression(head_.variables + head_.common_expressions);
     if (!may_be_nonlinear && !function.nonlinear.is_constant) {
       tokens_.fail(std::string(what) + " is not among the nonlinear ones, which come first", "a number in place of this expression");
     }
@@ -138,8 +148,34 @@ class Scanner {
     read_expression(objectives_[size(objective)], objective < head_.nonlinear_objectives, "this objective");
   }
 
-  NlScope scope(int common_end) const {
-    return {head_.nonlinear_variables(), head_.variables, head_.variables, common_end};
+  NlReferences read_expression(int common_end) {
+    NlReferences found = read_nl_expression(tokens_, {head_.nonlinear_variables(), head_.variables, common_end});
+    lone_choices_.insert(lone_choices_.end(), found.lone_choices.begin(), found.lone_choices.end());
+    return found;
+  }
+
+  /// The bytes of the file, with v + 0 for each lone choice v.
+  std::string bytes_for_library() const {
+    constexpr std::string_view kZeros("\0\0\0\0\0\0\0\0", sizeof(double));
+    std::string plus = "o0\n", zero = "n0\n";
+    if (tokens_.is_binary()) {
+      plus = "o" + std::string(kZeros.substr(0, tokens_.has_short_operators() ? sizeof(std::int16_t) : sizeof(std::int32_t)));
+      zero = "n" + std::string(kZeros);
+    }
+    std::string out;
+    std::size_t done = 0;
+    const auto copy_to = [&](std::size_t end) {
+      out += bytes_.substr(done, end - done);
+      done = end;
+    };
+    for (const NlRange& choice : lone_choices_) {
+      copy_to(choice.begin);
+      out += plus;
+      copy_to(choice.end);
+      out += zero;
+    }
+    copy_to(bytes_.size());
+    return out;
   }
 
   /// Its linear part, then its expression; either may refer to what is numbered below it.
@@ -157,7 +193,7 @@ class Scanner {
     }
     if (common.is_read) tokens_.fail("this common expression stands twice", "it once");
     common.is_read = true;
-    common.nonlinear = read_nl_expression(tokens_, scope(index));
+    common.nonlinear = read_expression(index);
   }
 
   void read_linear_part(std::vector<Function>& functions, const char* what) {
@@ -220,7 +256,8 @@ class Scanner {
     }
     for (const Function& objective : objectives_) gradient += static_cast<int>(objective.linear.size());
     const auto compare = [&](int found, int said, const char* what) {
-      if (found != said) tokens_.fail("there are " + std::to_string(found) + " non-zeros of the " + what, std::to_string(said) + ", as the head says");
+      if (found == said) return;
+      tokens_.fail("there are " + std::to_string(found) + " non-zeros of the " + what, std::to_string(said) + ", as the head says");
     };
     compare(jacobian, head_.jacobian_nonzeros, "Jacobian");
     compare(gradient, head_.gradient_nonzeros, "gradients");
@@ -256,9 +293,11 @@ class Scanner {
     }
   }
 
+  std::string_view bytes_;
   NlTokens tokens_;
   NlHeader head_;
   std::vector<Function> rows_, objectives_, common_;
+  std::vector<NlRange> lone_choices_;
   std::vector<int> columns_;  // non-zeros of each but the last, as segment k has them
   bool has_bounds_ = false, has_ranges_ = false, has_columns_ = false, has_start_ = false, has_multipliers_ = false;
   std::vector<int> visited_;  // by index: the last visit that came by
@@ -267,7 +306,7 @@ class Scanner {
 
 }  // namespace
 
-NlHeader scan_nl(std::string_view bytes, const std::string& file) {
+NlScan scan_nl(std::string_view bytes, const std::string& file) {
   return Scanner(bytes, file).scan();
 }
 

@@ -41,6 +41,10 @@ Value from_bytes(std::string_view bytes) {
 
 }  // namespace
 
+std::string shown(char key) {
+  return key > ' ' && key <= '~' ? std::string("'") + key + "'" : "byte " + std::to_string(static_cast<unsigned char>(key));
+}
+
 void NlTokens::fail(const std::string& what_is_wrong, const std::string& expected) const {
   if (binary_) throw InputError({place_.file, 0, 0}, "byte " + std::to_string(word_ + 1) + ": " + what_is_wrong, expected);
   throw InputError(place_, what_is_wrong, expected);
@@ -97,8 +101,8 @@ int NlTokens::operator_code(int at_most) {
 
 int NlTokens::within(int value, const char* what, int at_least, int at_most) const {
   if (value >= at_least && value <= at_most) return value;
-  fail("found " + std::to_string(value),
-       what + (at_least > at_most ? std::string(", but none is left") : " from " + std::to_string(at_least) + " to " + std::to_string(at_most)));
+  const std::string range = " from " + std::to_string(at_least) + " to " + std::to_string(at_most);
+  fail("found " + std::to_string(value), what + (at_least > at_most ? ", but there is none" : range));
 }
 
 double NlTokens::number(const char* what) {

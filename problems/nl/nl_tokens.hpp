@@ -13,6 +13,9 @@
 
 namespace tenon {
 
+/// A key as a message shows it.
+std::string shown(char key);
+
 class NlTokens {
  public:
   /// Refers to the bytes, which must outlive this; `file` is the name used in messages.
@@ -21,6 +24,10 @@ class NlTokens {
   /// From here on the file is binary; one kind writes operators as short integers.
   void begin_binary(bool short_operators) { binary_ = true, short_operators_ = short_operators; }
   bool is_binary() const { return binary_; }
+  bool has_short_operators() const { return short_operators_; }
+
+  /// Where the next byte stands in the file, from 0.
+  std::size_t offset() const { return next_; }
 
   /// Whether nothing follows but the end of the file; asked between two lines.
   bool at_end() const { return next_ == bytes_.size(); }

@@ -5,6 +5,10 @@
 
 namespace tenon {
 
+bool nl_files_are_available() {
+  return false;
+}
+
 NlFile make_ampl_program(const std::string&, const std::string& path, NlNames, int) {
   throw std::invalid_argument(path + ": .nl files are not available: the AMPL solver library was absent when tenon was built");
 }
