@@ -1,7 +1,9 @@
 #include "tenon/solvers/newton_kkt/make_newton_kkt.hpp"
 
 #include <algorithm>
+#include <optional>
 
+#include "tenon/core/quasi_newton_nlp.hpp"
 #include "tenon/core/scaled_nlp.hpp"
 #include "tenon/solvers/newton_kkt/newton_kkt.hpp"
 
@@ -27,7 +29,8 @@ class SparseNewtonKkt final : public Solver {
       : problem_(problem),
         options_(options),
         bounds_(problem.num_variables(), problem.num_constraints()),
-        scaled_(problem),
+        approximation_(approximation_of(problem)),
+        scaled_(approximation_ ? static_cast<const Nlp&>(*approximation_) : problem),
         solver_(scaled_, in_user_units(options, scaled_)),
         workspace_(problem.make_workspace()),
         jacobian_(problem.jacobian_pattern().zero_matrix()) {
@@ -41,6 +44,7 @@ class SparseNewtonKkt final : public Solver {
     problem_.bounds(bounds_);
     validate(problem_, bounds_);
     choose_scale(point);
+    if (approximation_ && !options_.warm_start) approximation_->forget();
     solver_.options().tolerance = options_.tolerance * std::max(scaled_.smallest_factor(), kMostTightened);
     scaled_.scale(point);
     Result result = solver_.solve(point);
@@ -50,6 +54,10 @@ class SparseNewtonKkt final : public Solver {
   }
 
  private:
+  static std::optional<QuasiNewtonNlp> approximation_of(const Nlp& problem) {
+    return problem.hessian_kind() == HessianKind::none ? std::optional<QuasiNewtonNlp>(problem) : std::nullopt;
+  }
+
   /// By the derivatives at the start, and a step aside for rows that are flat there; a warm start keeps the scale of the solve before.
   void choose_scale(const Point& point) {
     if (!options_.scaling || (options_.warm_start && chosen_)) return;
@@ -87,6 +95,7 @@ class SparseNewtonKkt final : public Solver {
   const Nlp& problem_;
   Options options_;
   Bounds bounds_;
+  std::optional<QuasiNewtonNlp> approximation_;  // where the problem has no Hessian
   ScaledNlp scaled_;
   NewtonKkt<Nlp> solver_;
   bool chosen_ = false;
@@ -106,7 +115,7 @@ std::unique_ptr<Solver> make_newton_kkt(const Nlp& problem, const Options& optio
 
 SolverDescription describe_newton_kkt() {
   return {"newton-kkt", "primal-dual interior point with filter line search, tenon's own", true,
-          "exact Hessian, multifrontal LDL', gradient-based scaling"};
+          "exact Hessian (damped BFGS where a problem has none), multifrontal LDL', gradient-based scaling"};
 }
 
 }  // namespace tenon
