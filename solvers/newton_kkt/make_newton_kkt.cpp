@@ -45,7 +45,7 @@ class SparseNewtonKkt final : public Solver {
     validate(problem_, bounds_);
     choose_scale(point);
     if (approximation_ && !options_.warm_start) approximation_->forget();
-    solver_.options().tolerance = options_.tolerance * std::max(scaled_.smallest_factor(), kMostTightened);
+    solver_.options().tolerance = tightened_tolerance();
     scaled_.scale(point);
     Result result = solver_.solve(point);
     scaled_.unscale(point);
@@ -73,11 +73,20 @@ class SparseNewtonKkt final : public Solver {
     scaled_.choose_flat_rows(values_of(jacobian_));
   }
 
+  /// Where the scale is moderate, the problem is to meet the tolerance in its own units too.
+  double tightened_tolerance() const {
+    const double tightened = options_.tolerance * std::max(scaled_.smallest_factor(), kMostTightened);
+    return std::max(tightened, std::min(options_.tolerance, kFinest));
+  }
+
   /// The answer in the problem's own units.
   void judge(const Point& point, Result& result) {
     result.objective /= scaled_.objective_factor();
     result.scaled_residual = result.residual;
-    if (result.status == Status::acceptable && result.residual.max_scaled() <= options_.tolerance) result.status = Status::solved;
+    if (result.status == Status::acceptable || result.status == Status::numerical_failure) {  // by a tolerance that was tightened
+      if (result.residual.max_scaled() <= kAcceptableFactor * options_.tolerance) result.status = Status::acceptable;
+      if (result.residual.max_scaled() <= options_.tolerance) result.status = Status::solved;
+    }
     if (result.status == Status::invalid_start) return;
     problem_.prepare(point.x, workspace_);
     problem_.gradient(point.x, workspace_, gradient_);
@@ -89,8 +98,7 @@ class SparseNewtonKkt final : public Solver {
     result.residual = kkt_residual(point, bounds_, gradient_, rows_);
   }
 
-  // Where the scale is moderate, the problem meets the tolerance in its own units too: that of the scaled problem is tightened by as much.
-  static constexpr double kMostTightened = 1e-2;
+  static constexpr double kMostTightened = 1e-4, kFinest = 1e-13;
 
   const Nlp& problem_;
   Options options_;
