@@ -19,6 +19,7 @@ struct Arguments {
   std::optional<int> max_iterations;
   std::uint64_t seed = 1;
   int rows = 0;
+  int starts = 1;
   int degree = 2;
   bool constant = false, cold = false, json = false, quiet = false, verbose = false;
 

@@ -56,6 +56,12 @@ const std::map<std::string, std::function<CLI::Option*(CLI::App&, Arguments&)>>&
        }},
       {"seed", [](App& a, Args& v) { return a.add_option("--seed", v.seed, "of random numbers")->type_name("N")->capture_default_str(); }},
       {"rows", [](App& a, Args& v) { return a.add_option("--rows", v.rows, "random rows of a vehicle")->type_name("N")->check(count); }},
+      {"starts",
+       [](App& a, Args& v) {
+         return a.add_option("--starts", v.starts, "solve from so many points; the best answer counts")
+             ->type_name("N")
+             ->check(CLI::Range(1, 1 << 20).description(""));
+       }},
       {"degree",
        [](App& a, Args& v) { return a.add_option("--degree", v.degree, "of the polynomials")->type_name("N")->capture_default_str(); }},
       {"constant", [](App& a, Args& v) { return a.add_flag("--constant", v.constant, "fit a constant term as well"); }},

@@ -1,7 +1,8 @@
-// tenon solve PROBLEM: one nonlinear program, from its own starting point. A failed one can be dumped, see dump.hpp.
+// tenon solve PROBLEM: one nonlinear program, from its own starting point, or from many. A failed one can be dumped, see dump.hpp.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 
 #include "tenon/apps/default_solver.hpp"
@@ -12,6 +13,7 @@
 #include "tenon/apps/table.hpp"
 #include "tenon/apps/verb.hpp"
 #include "tenon/core/explanation.hpp"
+#include "tenon/core/multi_start.hpp"
 #include "tenon/core/output_file.hpp"
 
 namespace tenon {
@@ -19,6 +21,31 @@ namespace tenon {
 namespace {
 
 constexpr int kVariablesShown = 20;
+
+/// Tries many starts; the best of them becomes the problem's own.
+MultiStart try_starts(NamedProblem& named, const std::string& solver, Options options, const Arguments& arguments) {
+  options.on_iteration = [](const Iteration&) { return !interrupted(); };
+  MultiStart tried = multi_start(*named.problem, *make_solver(solver, *named.problem, options), named.start, arguments.starts, arguments.seed);
+  named.start = tried.optima.front().start;
+  if (named.maximises) {
+    for (Optimum& optimum : tried.optima) optimum.result.objective *= -1;
+  }
+  return tried;
+}
+
+Json starts_json(const MultiStart& tried) {
+  Json optima = Json::array();
+  for (const Optimum& o : tried.optima) {
+    optima.push(Json::object().set("status", to_string(o.result.status)).set("objective", o.result.objective).set("found", o.found));
+  }
+  return Json::object().set("tried", tried.starts).set("failed", tried.failed).set("optima", optima);
+}
+
+void print_starts(const MultiStart& tried) {
+  fmt::print("{} starts, {} failed; {} distinct:\n", tried.starts, tried.failed, tried.optima.size());
+  for (const Optimum& o : tried.optima)
+    fmt::print("  {:<12} objective {:.12g}, found {} times\n", to_string(o.result.status), o.result.objective, o.found);
+}
 
 void print_result(const NamedProblem& named, const Measurement& m) {
   const Nlp& problem = *named.problem;
@@ -49,19 +76,26 @@ void print_result(const NamedProblem& named, const Measurement& m) {
 }  // namespace
 
 int run_solve(const Arguments& arguments) {
-  const NamedProblem named = load_problem(arguments.names.front());
+  NamedProblem named = load_problem(arguments.names.front());
   Options options = arguments.options(named.options);
+  const std::string solver = arguments.solver ? *arguments.solver : default_solver();
   if (!arguments.dump.empty()) check_output_path(arguments.dump);
   Observers observers(arguments);
+  std::optional<MultiStart> tried;
+  if (arguments.starts > 1) tried = try_starts(named, solver, options, arguments);
   options.on_iteration = observers.callback();
-  const Measurement m = measure(named, arguments.solver ? *arguments.solver : default_solver(), options, 0);
+  const Measurement m = measure(named, solver, options, 0);
   if (!m.refusal.empty()) throw std::invalid_argument(m.refusal);
   observers.finish();
   if (!arguments.dump.empty() && !succeeded(m.result.status)) write_dump(arguments.dump, named, options, m);
-  if (arguments.json)
-    print(result_json(*named.problem, m));
-  else if (!arguments.quiet)
+  if (arguments.json) {
+    Json json = result_json(*named.problem, m);
+    if (tried) json.set("starts", starts_json(*tried));
+    print(json);
+  } else if (!arguments.quiet) {
+    if (tried) print_starts(*tried);
     print_result(named, m);
+  }
   if (interrupted()) return kInterrupted;
   return succeeded(m.result.status) ? kFinished : kNotSolved;
 }

@@ -27,7 +27,7 @@ const std::vector<Verb>& verbs() {
        "PROBLEM",
        1,
        1,
-       {"solver", "tolerance", "max-iterations", "time-limit", "trace", "dump", "json", "quiet", "verbose"},
+       {"solver", "tolerance", "max-iterations", "time-limit", "starts", "seed", "trace", "dump", "json", "quiet", "verbose"},
        &run_solve},
       {"compare",
        "the same problem on every back end, judged by one ruler",

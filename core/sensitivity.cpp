@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "tenon/core/first_order.hpp"
@@ -97,6 +98,9 @@ void scatter(const Eigen::MatrixXd& all, const std::vector<int>& place, Eigen::M
 Sensitivity sensitivity(const ParametricNlp& problem, const Point& point) {
   validate(problem, point);
   refuse_soft_rows(problem);
+  if (problem.hessian_kind() != HessianKind::exact) {
+    throw std::invalid_argument("sensitivity of " + problem.name() + ": its Hessian is not exact (expected one that is)");
+  }
   const int n = problem.num_variables(), m = problem.num_constraints(), q = problem.num_parameters();
   Bounds bounds(n, m);
   problem.bounds(bounds);

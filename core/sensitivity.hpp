@@ -40,7 +40,7 @@ struct Sensitivity {
 };
 
 /// At `point`, a solution of the problem. A bound is active where its multiplier is larger than the distance to it. Allocates; costs one
-/// sparse LU factorisation. Throws std::invalid_argument where the point has the wrong sizes or a row is soft.
+/// sparse LU factorisation. Throws std::invalid_argument where the point has the wrong sizes, a row is soft or the Hessian is not exact.
 Sensitivity sensitivity(const ParametricNlp& problem, const Point& point);
 
 }  // namespace tenon

@@ -179,7 +179,7 @@ Status status_of(Ipopt::ApplicationReturnStatus code, const TenonTnlp& tnlp, con
 /// Everything that is set beside tolerance and limits, as Ipopt's own option file would say it.
 constexpr const char* kSettings =
     "bound_relax_factor 0, tol = constr_viol_tol = compl_inf_tol = tolerance, acceptable_tol = 100 tolerance; "
-    "warm start: warm_start_init_point yes, mu_init 1e-6, all warm_start pushes 1e-9";
+    "no Hessian: hessian_approximation limited-memory; warm start: warm_start_init_point yes, mu_init 1e-6, all warm_start pushes 1e-9";
 
 class IpoptSolver final : public Solver {
  public:
@@ -196,6 +196,7 @@ class IpoptSolver final : public Solver {
     set->SetNumericValue("compl_inf_tol", options.tolerance);
     set->SetNumericValue("acceptable_tol", kAcceptableFactor * options.tolerance);
     set->SetIntegerValue("max_iter", options.max_iterations);
+    if (problem.hessian_kind() == HessianKind::none) set->SetStringValue("hessian_approximation", "limited-memory");
     if (options.warm_start) {
       set->SetStringValue("warm_start_init_point", "yes");
       set->SetNumericValue("mu_init", 1e-6);

@@ -64,8 +64,10 @@ Traced run_back_end(const std::string& name, const P& problem, const Options& op
   return run;
 }
 
+/// Unscaled, as the path of fixed size is.
 template <class P>
-Traced run_sparse(const P& problem, const Options& options = {}) {
+Traced run_sparse(const P& problem, Options options = {}) {
+  options.scaling = false;
   return run_back_end("newton-kkt", problem, options);
 }
 

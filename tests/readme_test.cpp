@@ -1,4 +1,4 @@
-// The README shows code that builds and runs: its C++ is readme_snippet.cpp, word for word.
+// The README shows code that builds and runs: its C++ is readme_snippet.cpp and readme_automatic.cpp, word for word.
 #include <gtest/gtest.h>
 
 #include "tenon/core/read_file.hpp"
@@ -7,9 +7,12 @@ namespace {
 
 const std::string kSourceDir = TENON_SOURCE_DIR;
 
-TEST(Readme, ShowsTheSnippetThatTheTestsBuildAndRun) {
-  const std::string readme = tenon::read_file(kSourceDir + "/README.md"), snippet = tenon::read_file(kSourceDir + "/tests/readme_snippet.cpp");
-  EXPECT_NE(readme.find("```cpp\n" + snippet + "```\n"), std::string::npos);
+TEST(Readme, ShowsTheSnippetsThatTheTestsBuildAndRun) {
+  const std::string readme = tenon::read_file(kSourceDir + "/README.md");
+  for (const std::string file : {"readme_snippet.cpp", "readme_automatic.cpp"}) {
+    const std::string snippet = tenon::read_file(kSourceDir + "/tests/" + file);
+    EXPECT_NE(readme.find("```cpp\n" + snippet + "```\n"), std::string::npos) << file;
+  }
 }
 
 }  // namespace

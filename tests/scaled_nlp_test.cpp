@@ -104,7 +104,7 @@ TEST(ScaledNlp, ItsDerivativesObeyTheLaw) {
   EXPECT_TRUE(check_derivatives(tamed, vector({1, 5, 5, 1}), 0.8, vector({1.3, -0.2})).passed(1e-6));
 }
 
-TEST(ScaledNlp, NoDerivativeIsThenLargerThanAHundredAndNothingIsScaledUp) {
+TEST(ScaledNlp, NoDerivativeIsThenLargerThanTenAndNothingIsScaledUp) {
   for (const CatalogueEntry& entry : catalogue()) {
     const auto inner = entry.make();
     const BadlyScaled problem(*inner);
@@ -120,9 +120,9 @@ TEST(ScaledNlp, NoDerivativeIsThenLargerThanAHundredAndNothingIsScaledUp) {
     scaled.prepare(x, workspace);
     scaled.gradient(x, workspace, gradient);
     scaled.jacobian(x, workspace, values_of(jacobian));
-    EXPECT_LE(gradient.lpNorm<Eigen::Infinity>(), 100) << entry.name;
-    if (entry.name == "hs012") continue;  // its row is flat at the start
-    EXPECT_LE(jacobian.nonZeros() > 0 ? jacobian.coeffs().abs().maxCoeff() : 0, 100) << entry.name;
+    EXPECT_LE(gradient.lpNorm<Eigen::Infinity>(), 10) << entry.name;
+    if (entry.name == "hs012" || entry.name == "hs106") continue;  // flat at the start; needs less than the smallest factor
+    EXPECT_LE(jacobian.nonZeros() > 0 ? jacobian.coeffs().abs().maxCoeff() : 0, 10) << entry.name;
   }
 }
 
@@ -138,8 +138,8 @@ TEST(ScaledNlp, ARowThatIsFlatAtTheStartIsJudgedAStepAside) {
   bad.prepare(vector({1, 1}), workspace);
   bad.jacobian(vector({1, 1}), workspace, values_of(jacobian));
   scaled.choose_flat_rows(values_of(jacobian));
-  EXPECT_LE(scaled.row_factors()[0] * 8e6, 100);
-  EXPECT_GT(scaled.row_factors()[0] * 8e6, 25);
+  EXPECT_LE(scaled.row_factors()[0] * 8e6, 10);
+  EXPECT_GT(scaled.row_factors()[0] * 8e6, 2.5);
 }
 
 TEST(ScaledNlp, APointGoesThereAndBackBitForBit) {

@@ -1,7 +1,9 @@
 #include "tenon/solvers/newton_kkt/make_newton_kkt.hpp"
 
 #include <algorithm>
+#include <optional>
 
+#include "tenon/core/quasi_newton_nlp.hpp"
 #include "tenon/core/scaled_nlp.hpp"
 #include "tenon/solvers/newton_kkt/newton_kkt.hpp"
 
@@ -27,7 +29,8 @@ class SparseNewtonKkt final : public Solver {
       : problem_(problem),
         options_(options),
         bounds_(problem.num_variables(), problem.num_constraints()),
-        scaled_(problem),
+        approximation_(approximation_of(problem)),
+        scaled_(approximation_ ? static_cast<const Nlp&>(*approximation_) : problem),
         solver_(scaled_, in_user_units(options, scaled_)),
         workspace_(problem.make_workspace()),
         jacobian_(problem.jacobian_pattern().zero_matrix()) {
@@ -41,7 +44,8 @@ class SparseNewtonKkt final : public Solver {
     problem_.bounds(bounds_);
     validate(problem_, bounds_);
     choose_scale(point);
-    solver_.options().tolerance = options_.tolerance * std::max(scaled_.smallest_factor(), kMostTightened);
+    if (approximation_ && !options_.warm_start) approximation_->forget();
+    solver_.options().tolerance = tightened_tolerance();
     scaled_.scale(point);
     Result result = solver_.solve(point);
     scaled_.unscale(point);
@@ -50,6 +54,10 @@ class SparseNewtonKkt final : public Solver {
   }
 
  private:
+  static std::optional<QuasiNewtonNlp> approximation_of(const Nlp& problem) {
+    return problem.hessian_kind() == HessianKind::none ? std::optional<QuasiNewtonNlp>(problem) : std::nullopt;
+  }
+
   /// By the derivatives at the start, and a step aside for rows that are flat there; a warm start keeps the scale of the solve before.
   void choose_scale(const Point& point) {
     if (!options_.scaling || (options_.warm_start && chosen_)) return;
@@ -65,11 +73,20 @@ class SparseNewtonKkt final : public Solver {
     scaled_.choose_flat_rows(values_of(jacobian_));
   }
 
+  /// Where the scale is moderate, the problem is to meet the tolerance in its own units too.
+  double tightened_tolerance() const {
+    const double tightened = options_.tolerance * std::max(scaled_.smallest_factor(), kMostTightened);
+    return std::max(tightened, std::min(options_.tolerance, kFinest));
+  }
+
   /// The answer in the problem's own units.
   void judge(const Point& point, Result& result) {
     result.objective /= scaled_.objective_factor();
     result.scaled_residual = result.residual;
-    if (result.status == Status::acceptable && result.residual.max_scaled() <= options_.tolerance) result.status = Status::solved;
+    if (result.status == Status::acceptable || result.status == Status::numerical_failure) {  // by a tolerance that was tightened
+      if (result.residual.max_scaled() <= kAcceptableFactor * options_.tolerance) result.status = Status::acceptable;
+      if (result.residual.max_scaled() <= options_.tolerance) result.status = Status::solved;
+    }
     if (result.status == Status::invalid_start) return;
     problem_.prepare(point.x, workspace_);
     problem_.gradient(point.x, workspace_, gradient_);
@@ -81,12 +98,12 @@ class SparseNewtonKkt final : public Solver {
     result.residual = kkt_residual(point, bounds_, gradient_, rows_);
   }
 
-  // Where the scale is moderate, the problem meets the tolerance in its own units too: that of the scaled problem is tightened by as much.
-  static constexpr double kMostTightened = 1e-2;
+  static constexpr double kMostTightened = 1e-4, kFinest = 1e-13;
 
   const Nlp& problem_;
   Options options_;
   Bounds bounds_;
+  std::optional<QuasiNewtonNlp> approximation_;  // where the problem has no Hessian
   ScaledNlp scaled_;
   NewtonKkt<Nlp> solver_;
   bool chosen_ = false;
@@ -106,7 +123,7 @@ std::unique_ptr<Solver> make_newton_kkt(const Nlp& problem, const Options& optio
 
 SolverDescription describe_newton_kkt() {
   return {"newton-kkt", "primal-dual interior point with filter line search, tenon's own", true,
-          "exact Hessian, multifrontal LDL', gradient-based scaling"};
+          "exact Hessian (damped BFGS where a problem has none), multifrontal LDL', gradient-based scaling"};
 }
 
 }  // namespace tenon
