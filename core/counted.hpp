@@ -25,6 +25,7 @@ class CountedNlp final : public Nlp {
   int num_constraints() const override { return problem_.num_constraints(); }
   SparsePattern jacobian_pattern() const override { return problem_.jacobian_pattern(); }
   SparsePattern hessian_pattern() const override { return problem_.hessian_pattern(); }
+  Stages stages() const override { return problem_.stages(); }
   void bounds(Bounds& bounds) const override { problem_.bounds(bounds); }
   void initial_point(VectorRef x) const override { problem_.initial_point(x); }
   Workspace make_workspace() const override { return problem_.make_workspace(); }

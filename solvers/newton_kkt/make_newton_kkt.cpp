@@ -6,9 +6,10 @@ namespace tenon {
 
 namespace {
 
-class SparseNewtonKkt final : public Solver {
+template <class Kkt>
+class NlpNewtonKkt final : public Solver {
  public:
-  SparseNewtonKkt(const Nlp& problem, const Options& options)
+  NlpNewtonKkt(const Nlp& problem, const Options& options)
       : problem_(problem), bounds_(problem.num_variables(), problem.num_constraints()), solver_(problem, options) {}
 
   Result solve(Point& point) override {
@@ -21,18 +22,20 @@ class SparseNewtonKkt final : public Solver {
  private:
   const Nlp& problem_;
   Bounds bounds_;
-  NewtonKkt<Nlp> solver_;
+  NewtonKkt<Nlp, Kkt> solver_;
 };
 
 }  // namespace
 
 std::unique_ptr<Solver> make_newton_kkt(const Nlp& problem, const Options& options) {
   validate(options);
-  return std::make_unique<SparseNewtonKkt>(problem, options);
+  if (problem.stages().empty()) return std::make_unique<NlpNewtonKkt<SparseKkt>>(problem, options);
+  return std::make_unique<NlpNewtonKkt<StageKkt<>>>(problem, options);
 }
 
 SolverDescription describe_newton_kkt() {
-  return {"newton-kkt", "primal-dual interior point with filter line search, tenon's own", true, "exact Hessian, multifrontal LDL'"};
+  return {"newton-kkt", "primal-dual interior point with filter line search, tenon's own", true,
+          "exact Hessian; stage-structured or multifrontal LDL'"};
 }
 
 }  // namespace tenon
