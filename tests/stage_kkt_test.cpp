@@ -1,11 +1,13 @@
 // The stage-structured kind: the inertia that the eigenvalues give, the solutions of the dense matrix, nothing allocated, and an effort
 // that grows with the horizon and no faster, whatever the stages are.
 #include "tenon/solvers/newton_kkt/stage_kkt.hpp"
-#include "tenon/tests/allocation_counter.hpp"
-#include "tenon/tests/stage_systems.hpp"
+
+#include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
-#include <gtest/gtest.h>
+
+#include "tenon/tests/allocation_counter.hpp"
+#include "tenon/tests/stage_systems.hpp"
 
 namespace tenon {
 namespace {
@@ -43,9 +45,10 @@ void for_each_instance(Change change) {
         shape.indefinite = indefinite;
         StageGenerator generator(seed);
         StageInstance instance = generator.make(shape);
-        SCOPED_TRACE(testing::Message() << "N = " << shape.intervals << ", nx = " << shape.states << ", nu = " << shape.inputs << ", globals "
-                                        << shape.globals << ", equalities " << shape.equalities << ", inequalities " << shape.inequalities
-                                        << (shape.implicit ? ", implicit" : "") << (indefinite ? ", indefinite" : "") << ", seed " << seed);
+        SCOPED_TRACE(testing::Message() << "N = " << shape.intervals << ", nx = " << shape.states << ", nu = " << shape.inputs
+                                        << ", globals " << shape.globals << ", equalities " << shape.equalities << ", inequalities "
+                                        << shape.inequalities << (shape.implicit ? ", implicit" : "") << (indefinite ? ", indefinite" : "")
+                                        << ", seed " << seed);
         change(instance, shape, generator);
       }
     }
@@ -73,7 +76,8 @@ void expect_conforms(const StageInstance& instance, StageGenerator& generator) {
 }
 
 TEST(StageKkt, GivesTheInertiaAndTheSolutionOfTheDenseMatrix) {
-  for_each_instance([](const StageInstance& instance, const StageShape&, StageGenerator& generator) { expect_conforms(instance, generator); });
+  for_each_instance(
+      [](const StageInstance& instance, const StageShape&, StageGenerator& generator) { expect_conforms(instance, generator); });
 }
 
 TEST(StageKkt, GivesTheSameWithCompliantRows) {

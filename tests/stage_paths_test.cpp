@@ -1,5 +1,5 @@
-// Newton-KKT on problems with stages: the stage-structured kind takes the iterates of the sparse one, whatever the problem asks of it, solves
-// every horizon, allocates nothing and repeats bit for bit.
+// Newton-KKT on problems with stages: the stage-structured kind takes the iterates of the sparse one, whatever the problem asks of it,
+// solves every horizon, allocates nothing and repeats bit for bit.
 #include <gtest/gtest.h>
 
 #include "tenon/problems/optimal_control/linear_quadratic.hpp"
@@ -29,7 +29,9 @@ class LeastTime final : public Nlp {
     stages.globals = {kT, kT + 1};
     return stages;
   }
-  SparsePattern jacobian_pattern() const override { return SparsePattern::from_entries(num_constraints(), num_variables(), jacobian_entries()); }
+  SparsePattern jacobian_pattern() const override {
+    return SparsePattern::from_entries(num_constraints(), num_variables(), jacobian_entries());
+  }
   SparsePattern hessian_pattern() const override {
     std::vector<std::pair<int, int>> entries = {{kT, kT}};
     for (int k = 0; k < kIntervals; ++k) {

@@ -78,7 +78,9 @@ class StageGenerator {
 
   double normal() { return std::normal_distribution<double>()(random_); }
   double uniform() { return std::uniform_real_distribution<double>(0, 1)(random_); }
-  Vector normal_vector(int size) { return Vector::NullaryExpr(size, [this] { return normal(); }); }
+  Vector normal_vector(int size) {
+    return Vector::NullaryExpr(size, [this] { return normal(); });
+  }
 
  private:
   std::mt19937 random_;

@@ -11,12 +11,12 @@
 namespace tenon {
 
 struct LinearQuadraticProgram {
-  Eigen::MatrixXd a, b;         // nx x nx, nx x nu
-  Vector state_weight;          // nx: diagonal of Q
-  Vector input_weight;          // nu: diagonal of R
+  Eigen::MatrixXd a, b;  // nx x nx, nx x nu
+  Vector state_weight;   // nx: diagonal of Q
+  Vector input_weight;   // nu: diagonal of R
   double largest_input = kInfinity<double>;
-  Vector initial;               // nx
-  int intervals = 20;           // N
+  Vector initial;      // nx
+  int intervals = 20;  // N
 };
 
 /// Masses of 1 kg between springs of 1 N/m and walls, sampled at 0.5 s with the inputs held: states are all positions, then all velocities.

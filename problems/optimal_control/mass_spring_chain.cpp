@@ -24,7 +24,8 @@ Eigen::MatrixXd exponential(const Eigen::MatrixXd& m) {
 LinearQuadraticProgram mass_spring_chain(int states, int inputs, int intervals) {
   const int masses = states / 2;
   if (states % 2 != 0 || inputs < 1 || inputs > masses || intervals < 1) {
-    throw std::invalid_argument("lq: " + std::to_string(states) + " states, " + std::to_string(inputs) + " inputs, " + std::to_string(intervals) +
+    throw std::invalid_argument("lq: " + std::to_string(states) + " states, " + std::to_string(inputs) + " inputs, " +
+                                std::to_string(intervals) +
                                 " intervals (expected two states for each mass, no more inputs than masses, at least one interval)");
   }
   constexpr double kStiffness = 1, kMass = 1, kPeriod = 0.5, kMostForce = 0.5, kDisplacement = 2.5;

@@ -16,7 +16,7 @@ struct PoleOnCart {
   /// Acceleration of the cart at one point, with what its derivatives need.
   struct Acceleration {
     Lane sine, cosine, omega;
-    Lane a, a_theta, a_omega, a_u;              // of the cart
+    Lane a, a_theta, a_omega, a_u;                  // of the cart
     Lane alpha, alpha_theta, alpha_omega, alpha_u;  // of the pole
   };
 
@@ -72,7 +72,8 @@ struct RungeKuttaStep {
   static constexpr double kReach[4] = {0, 0.5, 0.5, 1};
 
   // (4), (5)
-  void run(const PoleOnCart& pole, double h, const Lane& position, const Lane& theta, const Lane& velocity, const Lane& omega, const Lane& u) {
+  void run(const PoleOnCart& pole, double h, const Lane& position, const Lane& theta, const Lane& velocity, const Lane& omega,
+           const Lane& u) {
     Lane sum_a = Lane::Zero(), sum_alpha = Lane::Zero(), double_a = Lane::Zero(), double_alpha = Lane::Zero();
     for (auto& row : d_end) {
       for (Lane& entry : row) entry.setZero();
@@ -107,7 +108,8 @@ struct RungeKuttaStep {
     d_end[1][0] += 1, d_end[1][1] += h, d_end[3][1] += 1;
   }
 
-  /// Second derivatives of lambda' F by (theta, omega, u): the entries (0,0) (1,0) (2,0) (1,1) (2,1) (2,2). Backwards through the points.  (6)
+  /// Second derivatives of lambda' F by (theta, omega, u): the entries (0,0) (1,0) (2,0) (1,1) (2,1) (2,2). Backwards through the points.
+  /// (6)
   void hessian(const PoleOnCart& pole, double h, const Lane lambda[4], Lane out[6]) const {
     for (int e = 0; e < 6; ++e) out[e].setZero();
     Lane theta_bar = Lane::Zero(), omega_bar = Lane::Zero();  // of the point behind

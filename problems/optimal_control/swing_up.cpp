@@ -18,18 +18,26 @@ struct Sweeps final : Nlp::Scratch {
   explicit Sweeps(int intervals) : steps(static_cast<std::size_t>((intervals + kLanes - 1) / kLanes)) {}
   std::vector<RungeKuttaStep> steps;
 };
-std::vector<RungeKuttaStep>& steps_of(Nlp::Workspace& workspace) { return static_cast<Sweeps&>(*workspace).steps; }
+std::vector<RungeKuttaStep>& steps_of(Nlp::Workspace& workspace) {
+  return static_cast<Sweeps&>(*workspace).steps;
+}
 
-PoleOnCart pole_of(const SwingUpProgram& p) { return {p.cart_mass, p.pole_mass, p.length, p.gravity, p.zero_is_upright ? -1.0 : 1.0}; }
+PoleOnCart pole_of(const SwingUpProgram& p) {
+  return {p.cart_mass, p.pole_mass, p.length, p.gravity, p.zero_is_upright ? -1.0 : 1.0};
+}
 
 /// Intervals 4 g .. 4 g + 3 as far as there are so many.
-int lanes_in_use(int intervals, std::size_t group) { return std::min(kLanes, intervals - kLanes * static_cast<int>(group)); }
+int lanes_in_use(int intervals, std::size_t group) {
+  return std::min(kLanes, intervals - kLanes * static_cast<int>(group));
+}
 
 }  // namespace
 
 SwingUp::SwingUp(SwingUpProgram program) : program_(std::move(program)) {
-  if (program_.intervals < 1) throw std::invalid_argument(program_.name + ": " + std::to_string(program_.intervals) + " intervals (expected at least 1)");
-  if (!(program_.duration > 0)) throw std::invalid_argument(program_.name + ": duration " + std::to_string(program_.duration) + " s (expected a positive one)");
+  if (program_.intervals < 1)
+    throw std::invalid_argument(program_.name + ": " + std::to_string(program_.intervals) + " intervals (expected at least 1)");
+  if (!(program_.duration > 0))
+    throw std::invalid_argument(program_.name + ": duration " + std::to_string(program_.duration) + " s (expected a positive one)");
 }
 
 Stages SwingUp::stages() const {
@@ -104,7 +112,9 @@ void SwingUp::initial_point(VectorRef x) const {
   }
 }
 
-Nlp::Workspace SwingUp::make_workspace() const { return std::make_unique<Sweeps>(program_.intervals); }
+Nlp::Workspace SwingUp::make_workspace() const {
+  return std::make_unique<Sweeps>(program_.intervals);
+}
 
 void SwingUp::prepare(ConstVectorRef x, Workspace& workspace) const {
   const PoleOnCart pole = pole_of(program_);

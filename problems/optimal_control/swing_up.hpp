@@ -18,19 +18,19 @@ struct SwingUpProgram {
   using State = std::array<double, 4>;
 
   std::string name = {};
-  double cart_mass = 1, pole_mass = 1;       // kg
-  double length = 1;                         // m, to the bob
-  double gravity = 9.81;                     // m/s^2
-  bool zero_is_upright = false;              // where the angle is counted from
-  double duration = 1;                       // s
-  int intervals = 20;                        // N
-  State state_weight = {}, final_weight = {};  // diagonals of Q and Q_N
-  double input_weight = 0;                   // R
-  double largest_input = kInfinity<double>;  // N
+  double cart_mass = 1, pole_mass = 1;                                               // kg
+  double length = 1;                                                                 // m, to the bob
+  double gravity = 9.81;                                                             // m/s^2
+  bool zero_is_upright = false;                                                      // where the angle is counted from
+  double duration = 1;                                                               // s
+  int intervals = 20;                                                                // N
+  State state_weight = {}, final_weight = {};                                        // diagonals of Q and Q_N
+  double input_weight = 0;                                                           // R
+  double largest_input = kInfinity<double>;                                          // N
   double least_position = -kInfinity<double>, largest_position = kInfinity<double>;  // m
   State initial = {};
-  std::optional<State> final = {};           // where the end is prescribed
-  bool gauss_newton = false;                 // the Hessian without the curvature of the dynamics
+  std::optional<State> final = {};  // where the end is prescribed
+  bool gauss_newton = false;        // the Hessian without the curvature of the dynamics
 };
 
 class SwingUp final : public Nlp {

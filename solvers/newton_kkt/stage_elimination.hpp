@@ -42,18 +42,20 @@ class RegularStage {
       h_ss = b_.value;
     }
     if (!factor_locals(w)) return false;
-    stage::over_tiles(states(), states(), true, [&](auto tile, int i, int j) __attribute__((always_inline)) {
-      tile.read(h_ss + i + j * state_stride(), state_stride());
-      tile.add(b_.at_s + i, state_stride(), {t_s + j * next_stride(), 1, next_stride()}, next());
-      tile.add(w + i, state_stride(), {b_.gain + j, state_stride(), 1}, locals(), -1);
-      tile.write(b_.value + i + j * state_stride(), state_stride());
-    });
+    stage::over_tiles(
+        states(), states(), true, [&](auto tile, int i, int j) __attribute__((always_inline)) {
+          tile.read(h_ss + i + j * state_stride(), state_stride());
+          tile.add(b_.at_s + i, state_stride(), {t_s + j * next_stride(), 1, next_stride()}, next());
+          tile.add(w + i, state_stride(), {b_.gain + j, state_stride(), 1}, locals(), -1);
+          tile.write(b_.value + i + j * state_stride(), state_stride());
+        });
     stage::symmetrise(b_.value, state_stride(), states());
     return true;
   }
 
   /// rhs: in; value_rhs: what the later stages leave of it, at the state, and L^-1 of it at the locals. (2.4)
-  void backward(const double* next_value, const double* next_rhs, const double* d, const double* rhs, double* value_rhs, double* scratch) const {
+  void backward(const double* next_value, const double* next_rhs, const double* d, const double* rhs, double* value_rhs,
+                double* scratch) const {
     double *q = scratch, *y = scratch + next_stride();
     copy(next_rhs, q, next());
     stage::add_times(next_value, next_stride(), rhs + b_.at_dynamics, next(), next(), q);
@@ -76,8 +78,8 @@ class RegularStage {
   }
 
   /// Locals, next state and multipliers, from the state in `solution`. (2.5)
-  void forward(const double* next_value, const double* next_rhs, const double* d, const double* rhs, const double* value_rhs, double* next_state,
-               double* solution, double* scratch) const {
+  void forward(const double* next_value, const double* next_rhs, const double* d, const double* rhs, const double* value_rhs,
+               double* next_state, double* solution, double* scratch) const {
     const double* s = solution + b_.at_s_vector;
     double* l = solution + b_.at_l_vector;
     for (int j = locals() - 1; j >= 0; --j) {

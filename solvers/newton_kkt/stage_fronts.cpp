@@ -11,11 +11,13 @@ namespace tenon {
 namespace {
 
 constexpr int kSweeps = 2;  // of the equilibration
-// u of linear_algebra.md (4.2). A prescribed end is steered by the inputs of a few stages only against high costs, which grow as 1/u: to wait
-// for all of them would take a front at every stage. Refinement returns the digits.
+// u of linear_algebra.md (4.2). A prescribed end is steered by the inputs of a few stages only against high costs, which grow as 1/u: to
+// wait for all of them would take a front at every stage. Refinement returns the digits.
 constexpr double kThreshold = 1e-8;
 
-int padded(int n) { return lanes::padded<double>(n); }
+int padded(int n) {
+  return lanes::padded<double>(n);
+}
 
 }  // namespace
 
@@ -59,7 +61,9 @@ StageFronts::Numbers StageFronts::numbers(const Record& record) {
 const double* StageFronts::value(int k, const StageSystem& system) const {
   return record(k).left_over > 0 ? const_cast<Arena&>(arena_).at(record(k).wide_value) : system.stage(k).value;
 }
-int StageFronts::value_stride(int k, const StageSystem& system) const { return padded(system.stage(k).states + record(k).left_over); }
+int StageFronts::value_stride(int k, const StageSystem& system) const {
+  return padded(system.stage(k).states + record(k).left_over);
+}
 
 // Columns: the next state, what it left over, locals, dynamics, other rows; of the last front: the first state and what is left.
 void StageFronts::number_unknowns(int k, const StageSystem& system, int* ids) {
@@ -99,7 +103,7 @@ void StageFronts::factor(int k, const StageSystem& system, Inertia& inertia) {
   double* panel = arena_.at(r.panel);
   std::copy_n(full_.data(), static_cast<std::ptrdiff_t>(stride_) * r.columns, panel);
   for (int j = 0; j < r.columns; ++j) {
-    order_[static_cast<std::size_t>(j)] = j;
+    order_[j] = j;
   }
   std::fill_n(at.magnitude, stride_, 0.0);
   for (int i = 0; i < r.rows; ++i) at.magnitude[i] = std::abs(full(i, i));
@@ -110,15 +114,16 @@ void StageFronts::factor(int k, const StageSystem& system, Inertia& inertia) {
   r.left_over = r.columns - r.eliminated;
   if (k >= 0) {
     const int kept = r.rows - r.columns;
-    subtract_product(panel + r.columns, unscaled_.data() + r.columns, stride_, r.eliminated, &full(r.columns, r.columns), stride_, kept, kept);
+    subtract_product(panel + r.columns, unscaled_.data() + r.columns, stride_, r.eliminated, &full(r.columns, r.columns), stride_, kept,
+                     kept);
     keep(k, system, front, at);
   }
   // names and scales in the order of elimination
   int* ids = ids_.data() + r.ids;
   number_unknowns(k, system, ids);
   for (int j = 0; j < r.columns; ++j) row_max_[j] = ids[j];
-  for (int j = 0; j < r.columns; ++j) ids[j] = static_cast<int>(row_max_[order_[static_cast<std::size_t>(j)]]);
-  for (int j = 0; j < r.columns; ++j) row_max_[j] = at.scale[order_[static_cast<std::size_t>(j)]];
+  for (int j = 0; j < r.columns; ++j) ids[j] = static_cast<int>(row_max_[order_[j]]);
+  for (int j = 0; j < r.columns; ++j) row_max_[j] = at.scale[order_[j]];
   std::copy_n(row_max_.data(), r.columns, at.scale);
 }
 
@@ -205,7 +210,8 @@ void StageFronts::keep(int k, const StageSystem& system, const Front& front, con
     const double* entries = front.panel + static_cast<std::ptrdiff_t>(column) * front.stride;
     const double scale_a = scale[front.ids[column]];
     for (int i = 0; i < states; ++i) set(states + a, i, entries[r.columns + i] / (scale_a * scale[r.columns + i]));
-    for (int c = a; c < r.left_over; ++c) set(states + c, states + a, entries[r.eliminated + c] / (scale_a * scale[front.ids[r.eliminated + c]]));
+    for (int c = a; c < r.left_over; ++c)
+      set(states + c, states + a, entries[r.eliminated + c] / (scale_a * scale[front.ids[r.eliminated + c]]));
   }
 }
 
@@ -227,7 +233,8 @@ void StageFronts::backward(int k, const StageSystem& system, const double* rhs, 
     double b;
     if (ahead && id >= ahead->at_s_vector && id < ahead->at_s_vector + ahead->states) {
       b = value_rhs[id];
-    } else if (const int* left = next ? std::find(left_ids, left_ids + next->left_over, id) : nullptr; next && left != left_ids + next->left_over) {
+    } else if (const int* left = next ? std::find(left_ids, left_ids + next->left_over, id) : nullptr;
+               next && left != left_ids + next->left_over) {
       b = numbers(*next).left_rhs[left - left_ids];
     } else {
       b = rhs[id];
@@ -291,7 +298,8 @@ void StageFronts::forward(int k, const StageSystem& system, const double* value_
     double sum = -value_rhs[next.at_s_vector + row];
     for (int j = 0; j < next.states; ++j) sum += p[row + static_cast<std::ptrdiff_t>(j) * p_stride] * solution[next.at_s_vector + j];
     for (int a = 0; a < left.left_over; ++a) {
-      sum += p[row + static_cast<std::ptrdiff_t>(next.states + a) * p_stride] * solution[ids_[left.ids + static_cast<std::size_t>(left.eliminated + a)]];
+      sum += p[row + static_cast<std::ptrdiff_t>(next.states + a) * p_stride] *
+             solution[ids_[left.ids + static_cast<std::size_t>(left.eliminated + a)]];
     }
     solution[b.at_dynamics + row] = sum;
   }

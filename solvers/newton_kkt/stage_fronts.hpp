@@ -1,6 +1,6 @@
-// Elimination of a stage that is not regular: hard rows beside the dynamics, compliant dynamics, a fixed next state, locals without positive
-// curvature. The stage becomes a dense front with threshold pivots (front.hpp); what has no stable pivot, such as a multiplier whose row the
-// inputs of this stage cannot meet, is left over to the stage before.
+// Elimination of a stage that is not regular: hard rows beside the dynamics, compliant dynamics, a fixed next state, locals without
+// positive curvature. The stage becomes a dense front with threshold pivots (front.hpp); what has no stable pivot, such as a multiplier
+// whose row the inputs of this stage cannot meet, is left over to the stage before.
 //
 //               eliminated or left over                    kept
 //     [ next state | left over by it | l | rows of the stage ][ s ]                                            stage_kkt.md (3.1)
@@ -40,8 +40,8 @@ class StageFronts {
   struct Numbers {
     double *d_inverse, *d_inverse_below, *scale, *t, *left_rhs, *magnitude;
   };
-  Record& record(int k) { return records_[static_cast<std::size_t>(k + 1)]; }
-  const Record& record(int k) const { return records_[static_cast<std::size_t>(k + 1)]; }
+  Record& record(int k) { return records_[k + 1]; }
+  const Record& record(int k) const { return records_[k + 1]; }
   Numbers numbers(const Record& record);
   void number_unknowns(int k, const StageSystem& system, int* ids);
   void assemble(int k, const StageSystem& system);

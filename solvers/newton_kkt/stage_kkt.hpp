@@ -35,9 +35,8 @@ class StageKkt {
     if (!finite_) return {0, 0, system_.n() + system_.m()};
     Inertia inertia;
     for (int k = system_.size() - 1; k >= 0; --k) {
-      regular_[static_cast<std::size_t>(k)] = may_be_regular(k) && visit(k, [&](auto stage) {
-        return stage.factor(next_value(k), compliance_of_rows(k), scratch_.data());
-      });
+      regular_[k] =
+          may_be_regular(k) && visit(k, [&](auto stage) { return stage.factor(next_value(k), compliance_of_rows(k), scratch_.data()); });
       if (is_regular(k)) {
         const StageBlocks& b = system_.stage(k);
         fronts_.nothing_left_over(k);
@@ -85,7 +84,7 @@ class StageKkt {
   static constexpr double kAccuracy = 1e-13;
   static constexpr int kRefinements = 5;  // at most
 
-  bool is_regular(int k) const { return regular_[static_cast<std::size_t>(k)] != 0; }
+  bool is_regular(int k) const { return regular_[k] != 0; }
   const double* next_value(int k) const { return k + 1 < system_.size() ? fronts_.value(k + 1, system_) : nothing_.data(); }
   const double* compliance_of_rows(int k) const { return system_.compliance() + system_.stage(k).at_rows; }
 
@@ -123,7 +122,9 @@ class StageKkt {
         fronts_.backward(k, system_, rhs, value_rhs);
         continue;
       }
-      visit(k, [&](auto stage) { stage.backward(next_value(k), next_part(k, value_rhs), compliance_of_rows(k), rhs, value_rhs, scratch_.data()); });
+      visit(k, [&](auto stage) {
+        stage.backward(next_value(k), next_part(k, value_rhs), compliance_of_rows(k), rhs, value_rhs, scratch_.data());
+      });
     }
     fronts_.backward(-1, system_, rhs, value_rhs);
     fronts_.forward(-1, system_, value_rhs, z.data());
@@ -149,7 +150,8 @@ class StageKkt {
         stage.subtract(solution_.data(), next_part(k, solution_.data()), system_.compliance(), system_.link(), residual_.data(),
                        next_part(k, residual_.data()));
       });
-      if (!system_.stage(k).is_explicit) subtract_coupling(system_.stage(k), next_part(k, solution_.data()), next_part(k, residual_.data()));
+      if (!system_.stage(k).is_explicit)
+        subtract_coupling(system_.stage(k), next_part(k, solution_.data()), next_part(k, residual_.data()));
     }
     return residual_.lpNorm<Eigen::Infinity>();
   }

@@ -14,10 +14,18 @@ using Packet = Eigen::internal::find_best_packet<double, 4>::type;
 inline constexpr int kPacket = Eigen::internal::unpacket_traits<Packet>::size;  // 4, or what the machine has
 inline constexpr int kPackets = lanes::kLanes<double> / kPacket;                // in a lane
 
-inline Packet load(const double* from) { return Eigen::internal::ploadt<Packet, Eigen::Aligned32>(from); }
-inline void store(double* to, const Packet& packet) { Eigen::internal::pstoret<double, Packet, Eigen::Aligned32>(to, packet); }
-inline Packet fill(double value) { return Eigen::internal::pset1<Packet>(value); }
-inline Packet multiply_add(const Packet& a, const Packet& b, const Packet& c) { return Eigen::internal::pmadd(a, b, c); }
+inline Packet load(const double* from) {
+  return Eigen::internal::ploadt<Packet, Eigen::Aligned32>(from);
+}
+inline void store(double* to, const Packet& packet) {
+  Eigen::internal::pstoret<double, Packet, Eigen::Aligned32>(to, packet);
+}
+inline Packet fill(double value) {
+  return Eigen::internal::pset1<Packet>(value);
+}
+inline Packet multiply_add(const Packet& a, const Packet& b, const Packet& c) {
+  return Eigen::internal::pmadd(a, b, c);
+}
 
 }  // namespace detail
 
@@ -81,31 +89,36 @@ template <class Visit>
 }
 
 /// c = a b: rows x columns, over `depth`.
-[[gnu::always_inline]] inline void product(const double* a, int a_stride, const Factor& b, int depth, double* c, int c_stride, int rows, int columns) {
-  over_tiles(rows, columns, false, [&](auto tile, int i, int j) __attribute__((always_inline)) {
-    tile.clear();
-    tile.add(a + i, a_stride, {b.data + j * b.column_step, b.row_step, b.column_step}, depth);
-    tile.write(c + i + j * c_stride, c_stride);
-  });
+[[gnu::always_inline]] inline void product(const double* a, int a_stride, const Factor& b, int depth, double* c, int c_stride, int rows,
+                                           int columns) {
+  over_tiles(
+      rows, columns, false, [&](auto tile, int i, int j) __attribute__((always_inline)) {
+        tile.clear();
+        tile.add(a + i, a_stride, {b.data + j * b.column_step, b.row_step, b.column_step}, depth);
+        tile.write(c + i + j * c_stride, c_stride);
+      });
 }
 
 /// c = c0 + a b, c0 and c of one shape.
-[[gnu::always_inline]] inline void add_product(const double* c0, const double* a, int a_stride, const Factor& b, int depth, double* c, int c_stride, int rows,
-                        int columns) {
-  over_tiles(rows, columns, false, [&](auto tile, int i, int j) __attribute__((always_inline)) {
-    tile.read(c0 + i + j * c_stride, c_stride);
-    tile.add(a + i, a_stride, {b.data + j * b.column_step, b.row_step, b.column_step}, depth);
-    tile.write(c + i + j * c_stride, c_stride);
-  });
+[[gnu::always_inline]] inline void add_product(const double* c0, const double* a, int a_stride, const Factor& b, int depth, double* c,
+                                               int c_stride, int rows, int columns) {
+  over_tiles(
+      rows, columns, false, [&](auto tile, int i, int j) __attribute__((always_inline)) {
+        tile.read(c0 + i + j * c_stride, c_stride);
+        tile.add(a + i, a_stride, {b.data + j * b.column_step, b.row_step, b.column_step}, depth);
+        tile.write(c + i + j * c_stride, c_stride);
+      });
 }
 
 /// y += sign a x: rows in whole lanes.
-[[gnu::always_inline]] inline void add_times(const double* a, int stride, const double* x, int rows, int columns, double* y, double sign = 1) {
-  over_lanes<1>(0, lanes::padded<double>(rows), 0, [&](auto tile, int i, int) __attribute__((always_inline)) {
-    tile.read(y + i, 0);
-    tile.add(a + i, stride, {x, 1, 0}, columns, sign);
-    tile.write(y + i, 0);
-  });
+[[gnu::always_inline]] inline void add_times(const double* a, int stride, const double* x, int rows, int columns, double* y,
+                                             double sign = 1) {
+  over_lanes<1>(
+      0, lanes::padded<double>(rows), 0, [&](auto tile, int i, int) __attribute__((always_inline)) {
+        tile.read(y + i, 0);
+        tile.add(a + i, stride, {x, 1, 0}, columns, sign);
+        tile.write(y + i, 0);
+      });
 }
 
 /// at = a', rows x columns the shape of a; the padding of `at` becomes zero.
@@ -115,11 +128,14 @@ template <class Visit>
     for (int i = 0; i < rows; i += 4) {
       Eigen::Matrix<double, 4, 4> block;
       for (int c = 0; c < 4; ++c) {
-        if (j + c < columns) block.col(c) = Eigen::Map<const Eigen::Vector4d, Eigen::Aligned32>(a + i + (j + c) * a_stride);
-        else block.col(c).setZero();
+        if (j + c < columns)
+          block.col(c) = Eigen::Map<const Eigen::Vector4d, Eigen::Aligned32>(a + i + (j + c) * a_stride);
+        else
+          block.col(c).setZero();
       }
       block.transposeInPlace();
-      for (int r = 0; r < 4 && i + r < rows; ++r) Eigen::Map<Eigen::Vector4d, Eigen::Aligned32>(at + j + (i + r) * at_stride) = block.col(r);
+      for (int r = 0; r < 4 && i + r < rows; ++r)
+        Eigen::Map<Eigen::Vector4d, Eigen::Aligned32>(at + j + (i + r) * at_stride) = block.col(r);
     }
   }
 }
