@@ -25,6 +25,7 @@
 
 #include "tenon/core/eigen.hpp"
 #include "tenon/core/sparse_pattern.hpp"
+#include "tenon/core/stages.hpp"
 
 namespace tenon {
 
@@ -91,6 +92,9 @@ class Nlp {
   /// Non-zeros of the Jacobian (m x n), and of the lower triangle of the Hessian of the Lagrangian (n x n). Asked for once.
   virtual SparsePattern jacobian_pattern() const = 0;
   virtual SparsePattern hessian_pattern() const = 0;
+
+  /// The stages of an optimal control problem; none where the problem has no such structure. Asked for once.
+  virtual Stages stages() const { return {}; }
 
   /// Fills bounds that arrive with the right sizes and without any limit. Asked for at the start of every solve.
   virtual void bounds(Bounds& bounds) const = 0;

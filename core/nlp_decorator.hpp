@@ -14,6 +14,7 @@ class NlpDecorator : public Nlp {
   int num_constraints() const override { return problem_.num_constraints(); }
   SparsePattern jacobian_pattern() const override { return problem_.jacobian_pattern(); }
   SparsePattern hessian_pattern() const override { return problem_.hessian_pattern(); }
+  Stages stages() const override { return problem_.stages(); }
   void bounds(Bounds& bounds) const override { problem_.bounds(bounds); }
   std::vector<SoftRow> soft_rows() const override { return problem_.soft_rows(); }
   void nominal_values(VectorRef variables, VectorRef rows) const override { problem_.nominal_values(variables, rows); }

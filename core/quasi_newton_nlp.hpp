@@ -27,6 +27,7 @@ class QuasiNewtonNlp final : public NlpDecorator {
   /// Every workspace forgets what it learnt: between two solves that have nothing to do with one another.
   void forget() { ++epoch_; }
 
+  Stages stages() const override { return {}; }  // its patterns are not those of stages
   SparsePattern hessian_pattern() const override { return SparsePattern::full_lower(num_variables()); }
   HessianKind hessian_kind() const override { return HessianKind::exact; }  // as far as a solver is concerned
   Workspace make_workspace() const override;

@@ -34,6 +34,7 @@ class WithSoftRows final : public NlpDecorator {
 
   int num_variables() const override { return n_ + 2 * count(); }
   SparsePattern jacobian_pattern() const override;
+  Stages stages() const override { return {}; }  // its patterns are not those of stages
   SparsePattern hessian_pattern() const override;
   void bounds(Bounds& bounds) const override;
   std::vector<SoftRow> soft_rows() const override { return {}; }

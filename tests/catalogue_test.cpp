@@ -87,12 +87,15 @@ struct Demand {
 };
 
 Demand demand_on(const std::string& solver) {
+  // Dense or first-order methods: hundreds of variables tied by dynamics take them minutes.
+  static const std::set<std::string> kDynamics = {"cart-pole", "lq", "pendulum"};
   static const std::map<std::string, Demand> weaker = {
+      {"nlopt-slsqp", {.beyond = kDynamics}},
       // First-order methods without curvature: they creep, so their own verdict is not asked for, only a near objective.
       {"nlopt-mma", {.objective_error = 1e-4, .success = false, .beyond = {"hs106" /* its rows differ by 1e6 in scale */}}},
       {"nlopt-ccsaq", {.objective_error = 1e-4, .success = false, .beyond = {"hs106" /* its rows differ by 1e6 in scale */}}},
       // One penalty for all rows: it falls into the origin of hs093, where the product of degree six is flat, and cannot scale hs106.
-      {"nlopt-auglag", {.objective_error = 1e-4, .success = false, .beyond = {"hs093", "hs106"}}},
+      {"nlopt-auglag", {.objective_error = 1e-4, .success = false, .beyond = {"hs093", "hs106", "cart-pole", "lq", "pendulum"}}},
   };
   const auto found = weaker.find(solver);
   return found == weaker.end() ? Demand{} : found->second;
@@ -100,7 +103,7 @@ Demand demand_on(const std::string& solver) {
 
 /// Known local minima beside the published one.
 std::vector<double> known_minima(const CatalogueEntry& entry) {
-  static const std::map<std::string, std::vector<double>> others = {{"hs044", {-13}}};
+  static const std::map<std::string, std::vector<double>> others = {{"hs044", {-13}}, {"cart-pole", {11190.6966}}};
   std::vector<double> all = {*entry.published_objective};
   if (const auto found = others.find(entry.name); found != others.end()) all.insert(all.end(), found->second.begin(), found->second.end());
   return all;

@@ -4,11 +4,15 @@ namespace tenon {
 
 void add_allocation(std::vector<Benchmark>& rows);
 void add_linear_allocation(std::vector<Benchmark>& rows);
+void add_linear_quadratic(std::vector<Benchmark>& rows);
+void add_swing_up(std::vector<Benchmark>& rows);
 
 std::vector<Benchmark> benchmarks() {
   std::vector<Benchmark> rows;
   add_allocation(rows);
   add_linear_allocation(rows);
+  add_swing_up(rows);
+  add_linear_quadratic(rows);
   return rows;
 }
 

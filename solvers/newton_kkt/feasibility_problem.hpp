@@ -42,6 +42,7 @@ class FeasibilityProblem {
 
   int num_variables() const { return problem_.num_variables(); }
   int num_constraints() const { return problem_.num_constraints(); }
+  Stages stages() const { return problem_.stages(); }
   SparsePattern jacobian_pattern() const { return problem_.jacobian_pattern(); }
   SparsePattern hessian_pattern() const { return pattern_; }
   Workspace make_workspace() const { return {problem_.make_workspace(), std::vector<double>(places_.size())}; }

@@ -11,7 +11,6 @@
 namespace tenon {
 namespace {
 
-constexpr double kThreshold = 0.01;          // u of (4.2)
 constexpr double kForcedThreshold = 1e-10;   // where columns may not be left over
 constexpr double kPerturbation = 1.5e-8;     // sqrt(eps) of (4.5)
 constexpr double kAlpha = 0.6403882032022076;  // (2.3)
@@ -227,7 +226,7 @@ void Elimination::update_behind_block() {
 
 }  // namespace
 
-void eliminate_stable(Front& front, Inertia& inertia) { Elimination(front, inertia, kThreshold).run(false); }
+void eliminate_stable(Front& front, Inertia& inertia, double threshold) { Elimination(front, inertia, threshold).run(false); }
 
 void eliminate_rest(Front& front, Inertia& inertia) { Elimination(front, inertia, kForcedThreshold).run(true); }
 

@@ -30,8 +30,10 @@ struct Front {
   double* unscaled_column(int j) { return unscaled + static_cast<long>(j) * stride; }
 };
 
+inline constexpr double kPivotThreshold = 0.01;  // u of (4.2)
+
 /// Eliminates what is stable, |L| <= 1/u, and adds to the inertia.
-void eliminate_stable(Front& front, Inertia& inertia);
+void eliminate_stable(Front& front, Inertia& inertia, double threshold = kPivotThreshold);
 
 /// Eliminates the remaining columns whatever they are; a pivot that is next to nothing is perturbed and counted as a zero.
 void eliminate_rest(Front& front, Inertia& inertia);

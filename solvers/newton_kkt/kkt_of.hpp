@@ -1,4 +1,4 @@
-// Which linear algebra a problem gets: chosen by the type of its Hessian.
+// Which linear algebra a problem gets: by the sizes of its stages where it knows them when compiled, else by the type of its Hessian.
 //
 // Every kind has the same verbs:  factor(H, J, sigma, d) -> Inertia  and  solve(r_x, r_c, dx, dlambda)  for
 //
@@ -13,6 +13,7 @@
 #include "tenon/solvers/newton_kkt/arm_block_kkt.hpp"
 #include "tenon/solvers/newton_kkt/dense_kkt.hpp"
 #include "tenon/solvers/newton_kkt/sparse_kkt.hpp"
+#include "tenon/solvers/newton_kkt/stage_kkt.hpp"
 
 namespace tenon {
 
@@ -31,15 +32,24 @@ template <int M>
 struct KktFor<SparseMatrix, M> {
   using type = SparseKkt;
 };
+template <class P>
+struct KktOfProblem : KktFor<HessianOf<P>, P::kConstraints> {};
+template <class P>
+  requires requires { typename P::StageSizes; }
+struct KktOfProblem<P> {
+  using type = StageKkt<typename P::StageSizes>;
+};
 }  // namespace detail
 
 template <class P>
-using KktOf = typename detail::KktFor<HessianOf<P>, P::kConstraints>::type;
+using KktOf = typename detail::KktOfProblem<P>::type;
 
-/// Analyses the patterns of a sparse problem; a fixed-size kind needs none.
+/// Analyses the patterns, and the stages where the kind takes them; a fixed-size kind needs none.
 template <class Kkt, class P>
 Kkt make_kkt(const P& problem) {
   if constexpr (kFixedSize<P>) return Kkt(problem.num_variables(), problem.num_constraints());
+  else if constexpr (std::is_constructible_v<Kkt, Stages, SparsePattern, SparsePattern>)
+    return Kkt(problem.stages(), problem.hessian_pattern(), problem.jacobian_pattern());
   else return Kkt(problem.hessian_pattern(), problem.jacobian_pattern());
 }
 

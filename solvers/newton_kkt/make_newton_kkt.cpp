@@ -23,9 +23,10 @@ Options in_user_units(Options options, const ScaledNlp& scaled) {
 }
 
 /// Solves the scaled problem and answers for the problem itself.
-class SparseNewtonKkt final : public Solver {
+template <class Kkt>
+class NlpNewtonKkt final : public Solver {
  public:
-  SparseNewtonKkt(const Nlp& problem, const Options& options)
+  NlpNewtonKkt(const Nlp& problem, const Options& options)
       : problem_(problem),
         options_(options),
         bounds_(problem.num_variables(), problem.num_constraints()),
@@ -105,7 +106,7 @@ class SparseNewtonKkt final : public Solver {
   Bounds bounds_;
   std::optional<QuasiNewtonNlp> approximation_;  // where the problem has no Hessian
   ScaledNlp scaled_;
-  NewtonKkt<Nlp> solver_;
+  NewtonKkt<Nlp, Kkt> solver_;
   bool chosen_ = false;
 
   Nlp::Workspace workspace_;  // of the problem itself: what its scale and its ruler read
@@ -118,12 +119,14 @@ class SparseNewtonKkt final : public Solver {
 std::unique_ptr<Solver> make_newton_kkt(const Nlp& problem, const Options& options) {
   validate(options);
   refuse_soft_rows(problem);
-  return std::make_unique<SparseNewtonKkt>(problem, options);
+  const bool staged = !problem.stages().empty() && problem.hessian_kind() != HessianKind::none;
+  if (staged) return std::make_unique<NlpNewtonKkt<StageKkt<>>>(problem, options);
+  return std::make_unique<NlpNewtonKkt<SparseKkt>>(problem, options);
 }
 
 SolverDescription describe_newton_kkt() {
   return {"newton-kkt", "primal-dual interior point with filter line search, tenon's own", true,
-          "exact Hessian (damped BFGS where a problem has none), multifrontal LDL', gradient-based scaling"};
+          "exact Hessian (damped BFGS where a problem has none), stage-structured or multifrontal LDL', gradient-based scaling"};
 }
 
 }  // namespace tenon

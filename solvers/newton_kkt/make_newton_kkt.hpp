@@ -8,7 +8,8 @@
 
 namespace tenon {
 
-/// The sparse instance of NewtonKkt. Throws std::invalid_argument for options or bounds that make no sense.
+/// The instance of NewtonKkt for problems that declare stages, or the sparse one. Throws std::invalid_argument for options, bounds or stages
+/// that make no sense.
 std::unique_ptr<Solver> make_newton_kkt(const Nlp& problem, const Options& options);
 
 SolverDescription describe_newton_kkt();

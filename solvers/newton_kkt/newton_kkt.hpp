@@ -18,7 +18,7 @@
 
 namespace tenon {
 
-template <NonlinearProgram P>
+template <NonlinearProgram P, class Kkt = KktOf<P>>
 class Restoration;
 
 /// In the place of Restoration: where the line search finds nothing, the solve ends.
@@ -33,7 +33,7 @@ struct NoClock {
   static time_point now() { return {}; }
 };
 
-template <NonlinearProgram P, class Kkt = KktOf<P>, class Rescue = Restoration<P>, class Clock = std::chrono::steady_clock>
+template <NonlinearProgram P, class Kkt = KktOf<P>, class Rescue = Restoration<P, Kkt>, class Clock = std::chrono::steady_clock>
 class NewtonKkt {
  public:
   using Scalar = typename P::Scalar;

@@ -12,7 +12,7 @@
 
 namespace tenon {
 
-template <NonlinearProgram P>
+template <NonlinearProgram P, class Kkt>
 class Restoration {
  public:
   using Scalar = typename P::Scalar;
@@ -64,7 +64,7 @@ class Restoration {
   static constexpr int kMaxRounds = 5;
 
   FeasibilityProblem<P> feasibility_;
-  NewtonKkt<FeasibilityProblem<P>, KktOf<FeasibilityProblem<P>>, NoRestoration> solver_;
+  NewtonKkt<FeasibilityProblem<P>, Kkt, NoRestoration> solver_;  // the patterns, and so the linear algebra, are those of the problem
   PointOf<FeasibilityProblem<P>> point_;
   int iterations_ = 0;
 };

@@ -1,0 +1,126 @@
+// Values into the blocks, and vectors between the order of the problem and that of the stages.
+#include <algorithm>
+#include <cmath>
+
+#include "tenon/solvers/newton_kkt/stage_products.hpp"
+#include "tenon/solvers/newton_kkt/stage_system.hpp"
+
+namespace tenon {
+namespace {
+
+constexpr double kFixed = 1e30;     // sigma that holds a variable
+constexpr double kVanished = 1e-8;  // a coefficient of a next state that does not define it
+
+int padded(int n) {
+  return lanes::padded<double>(n);
+}
+
+}  // namespace
+
+bool StageSystem::assemble(const SparseMatrix& hessian, const SparseMatrix& jacobian, ConstVectorRef sigma, ConstVectorRef d) {
+  const Eigen::Map<const Vector> h(hessian.valuePtr(), hessian.nonZeros()), j(jacobian.valuePtr(), jacobian.nonZeros());
+  if (!std::isfinite(h.sum() + j.sum() + sigma.sum() + d.sum())) return false;
+  double* to = arena_.data();
+  for (std::size_t e = 0; e < hessian_places_.size(); ++e) to[hessian_places_[e].first] = to[hessian_places_[e].mirror] = h[e];
+  for (const int place : bare_diagonals_) to[place] = 0;
+  for (std::size_t i = 0; i < diagonal_places_.size(); ++i) to[diagonal_places_[i]] += sigma[i];
+  for (const Run& run : jacobian_runs_) {
+    for (int e = 0; e < run.length; ++e) to[run.place + e] = j[run.source + e];
+  }
+  scaled_ = false;
+  for (const auto& [source, place] : links_) {
+    // the coefficient of a next state: its row is scaled so that it is -1; one that has vanished stays as it is
+    const double value = j[source];
+    const bool vanished = std::abs(value) < kVanished;
+    link_[place] = vanished ? value : -1;
+    row_scale_[place] = vanished || value == -1 ? 1 : -1 / value;
+    scaled_ |= row_scale_[place] != 1;
+  }
+  if (scaled_) scale_dynamics();
+  for (std::size_t row = 0; row < row_places_.size(); ++row) compliance_[row_places_[row]] = d[row];
+  if (scaled_) compliance_.array() *= row_scale_.array().square();
+  if (any_fixed_ || sigma.maxCoeff() >= kFixed) take_out_fixed(sigma);
+  for (const StageBlocks& b : stages_) {
+    stage::transpose(b.a_s, b.next_stride, b.next_states, b.states, b.at_s, b.state_stride);
+    stage::transpose(b.a_l, b.next_stride, b.next_states, b.locals, b.at_l, b.local_stride);
+  }
+  return true;
+}
+
+void StageSystem::scale_dynamics() {
+  for (const StageBlocks& b : stages_) {
+    for (int i = 0; i < b.own_next_states && b.is_explicit; ++i) {
+      const double scale = row_scale_[b.at_dynamics + i];
+      for (int j = 0; j < b.states; ++j) b.a_s[i + j * b.next_stride] *= scale;
+      for (int j = 0; j < b.locals; ++j) b.a_l[i + j * b.next_stride] *= scale;
+    }
+  }
+}
+
+// A variable held by sigma = 1e30 leaves the system: its row and column become those of the identity, its right-hand side 0.
+void StageSystem::take_out_fixed(ConstVectorRef sigma) {
+  std::ranges::fill(fixed_state_, 0);
+  fixed_.clear();
+  for (int i = 0; i < n_; ++i) {
+    if (sigma[i] < kFixed) continue;
+    fixed_.push_back(i);
+    take_out(i);
+  }
+  any_fixed_ = !fixed_.empty();
+}
+
+void StageSystem::take_out(int variable) {
+  const Home home = homes_[variable];
+  const bool global = home.state >= stage(home.stage).states - globals_;
+  const auto clear_in = [&](StageBlocks& b, int local, int state) {
+    if (local >= 0) {
+      for (int j = 0; j < b.locals; ++j) b.h_ll[j + local * b.local_stride] = b.h_ll[local + j * b.local_stride] = 0;
+      for (int j = 0; j < b.states; ++j) b.h_sl[j + local * b.state_stride] = 0;
+      for (int j = 0; j < b.next_states; ++j) b.a_l[j + local * b.next_stride] = 0;
+      for (int j = 0; j < b.rows; ++j) b.c_l[local + j * b.local_stride] = 0;
+    } else {
+      for (int j = 0; j < b.states; ++j) b.h_ss[j + state * b.state_stride] = b.h_ss[state + j * b.state_stride] = 0;
+      for (int j = 0; j < b.locals; ++j) b.h_sl[state + j * b.state_stride] = 0;
+      for (int j = 0; j < b.own_next_states; ++j) b.a_s[j + state * b.next_stride] = 0;
+      for (int j = 0; j < b.rows; ++j) b.c_s[state + j * b.state_stride] = 0;
+    }
+    if (!b.is_explicit) {
+      const int stride = padded(b.own_next_states);
+      for (int j = 0; j < b.own_next_states; ++j) (local >= 0 ? b.h_nl[j + local * stride] : b.h_ns[j + state * stride]) = 0;
+    }
+  };
+  if (global) {
+    for (int k = 0; k < size(); ++k) clear_in(stage(k), -1, home.state - stages_.back().states + stage(k).states);
+  } else {
+    clear_in(stage(home.stage), home.local, home.state);
+    if (home.state >= 0 && home.stage > 0) {
+      StageBlocks& before = stage(home.stage - 1);
+      const int stride = padded(before.own_next_states);
+      if (before.is_explicit) link_[before.at_dynamics + home.state] = 0;
+      for (int j = 0; j < before.rows && !before.is_explicit; ++j) before.c_n[home.state + j * stride] = 0;
+      for (int j = 0; j < before.states && !before.is_explicit; ++j) before.h_ns[home.state + j * stride] = 0;
+      for (int j = 0; j < before.locals && !before.is_explicit; ++j) before.h_nl[home.state + j * stride] = 0;
+    }
+    if (home.state >= 0) fixed_state_[home.stage] = 1;
+  }
+  arena_[diagonal_places_[variable]] = 1;
+}
+
+void StageSystem::gather(ConstVectorRef r_x, ConstVectorRef r_c, double* vector) const {
+  for (std::size_t i = 0; i < variable_places_.size(); ++i) vector[variable_places_[i]] = r_x[i];
+  for (std::size_t j = 0; j < row_places_.size(); ++j) vector[row_places_[j]] = r_c[j];
+  if (scaled_) {
+    for (const int place : row_places_) vector[place] *= row_scale_[place];
+  }
+  for (const int i : fixed_) vector[variable_places_[i]] = 0;
+}
+
+void StageSystem::scatter(const double* vector, VectorRef dx, VectorRef dlambda) const {
+  for (std::size_t i = 0; i < variable_places_.size(); ++i) dx[i] = vector[variable_places_[i]];
+  for (std::size_t j = 0; j < row_places_.size(); ++j) dlambda[j] = vector[row_places_[j]];
+  if (scaled_) {
+    for (std::size_t j = 0; j < row_places_.size(); ++j) dlambda[j] *= row_scale_[row_places_[j]];
+  }
+}
+
+}  // namespace tenon

@@ -1,0 +1,110 @@
+// The KKT system of a problem with stages, in blocks: stage by stage, with the variables that belong to it.
+//
+//     w_k = (l, s):  s, its state: what the rows of the stage before touch, and the globals;   l: all else (inputs, interior variables)
+//     rows of stage k:   A_l l + A_s s - s_{k+1} = r  (dynamics, one for each state of the next stage),    C_l l + C_s s + C_n s_{k+1} = r
+//     (others)
+//
+// A stage whose dynamics are not of this explicit form has others only. Globals are carried along as states that do not move, so that
+// the border is eliminated together with the last state. Equations: stage_kkt.md.
+#pragma once
+
+#include <vector>
+
+#include "tenon/core/sparse_pattern.hpp"
+#include "tenon/core/stages.hpp"
+#include "tenon/solvers/newton_kkt/multifrontal_ldlt.hpp"
+
+namespace tenon {
+
+/// One stage. Matrices are column-major, columns padded with zeros to whole lanes; all in one arena, stage behind stage.
+struct StageBlocks {
+  int locals = 0, states = 0;  // l; s with the globals
+  int next_states = 0;         // states of the next stage, with the globals; 0 at the last one
+  int rows = 0;                // rows that are not dynamics
+  int own_next_states = 0;     // next_states without the globals
+  bool is_explicit = false;    // whether the dynamics give every own state of the next stage
+  int state_stride = 0, local_stride = 0, next_stride = 0;
+
+  double *h_ss = nullptr, *h_sl = nullptr, *h_ll = nullptr;                 // Hessian with sigma: both triangles
+  double *a_s = nullptr, *a_l = nullptr, *at_s = nullptr, *at_l = nullptr;  // dynamics, and transposed
+  double *c_s = nullptr, *c_l = nullptr, *c_n = nullptr;                    // transposed other rows: one column each
+  double *h_ns = nullptr, *h_nl = nullptr;                                  // Hessian between the next state and this stage (not explicit)
+  double* value = nullptr;                                                  // P: what the stages from here on add to the state's Hessian
+  double *gain = nullptr, *l_ll = nullptr, *d_inverse = nullptr;            // factor of the locals: M_ll = L D L', gain = M_sl L^-T D^-1
+
+  int at_l_vector = 0, at_s_vector = 0, at_dynamics = 0, at_rows = 0;  // where l, s, the dynamics and the other rows are in a vector
+};
+
+class StageSystem {
+ public:
+  /// hessian: lower triangle, n x n; jacobian: m x n. Throws std::invalid_argument where an entry couples what stages may not couple, or
+  /// the stages leave a variable or row out.
+  StageSystem(const Stages& stages, const SparsePattern& hessian, const SparsePattern& jacobian);
+
+  /// False where a number is not finite. sigma: n; d: m.
+  bool assemble(const SparseMatrix& hessian, const SparseMatrix& jacobian, ConstVectorRef sigma, ConstVectorRef d);
+
+  int n() const { return n_; }
+  int m() const { return m_; }
+  int size() const { return static_cast<int>(stages_.size()); }
+  int globals() const { return globals_; }
+  int vector_size() const { return vector_size_; }
+  StageBlocks& stage(int k) { return stages_[k]; }
+  const StageBlocks& stage(int k) const { return stages_[k]; }
+
+  /// D of the rows (scaled), 0 at variables.
+  const double* compliance() const { return compliance_.data(); }
+  /// Coupling of each row of dynamics to its next state: -1, or 0 where that is fixed.
+  const double* link() const { return link_.data(); }
+  /// Whether a state of stage k is fixed.
+  bool has_fixed_state(int k) const { return fixed_state_[k]; }
+
+  /// Right-hand sides and solutions between the order of the problem and that of the stages.
+  void gather(ConstVectorRef r_x, ConstVectorRef r_c, double* vector) const;
+  void scatter(const double* vector, VectorRef dx, VectorRef dlambda) const;
+
+ private:
+  struct Place {
+    int first, mirror;
+  };
+  struct Run {  // entries of the Jacobian in their order
+    int source, place, length;
+  };
+  struct Link {  // the coefficient of a next state
+    int source, place;
+  };
+  void find_states(const Stages& stages, const SparsePattern& jacobian);
+  void find_dynamics(const Stages& stages, const SparsePattern& hessian, const SparsePattern& jacobian);
+  void reserve();
+  void place_hessian(const SparsePattern& hessian);
+  void place_jacobian(const SparsePattern& jacobian);
+  void scale_dynamics();
+  void take_out_fixed(ConstVectorRef sigma);
+  void take_out(int variable);
+  int offset(const double* place) const { return static_cast<int>(place - arena_.data()); }
+
+  struct Home {      // of a variable
+    int stage = -1;  // the last one for a global
+    int local = -1;  // its index among the locals, or -1
+    int state = -1;  // its index among the states
+  };
+
+  int n_, m_, globals_;
+  std::vector<StageBlocks> stages_;
+  std::vector<Home> homes_;
+  std::vector<int> row_stage_, row_dynamics_;  // of a row: its stage, its index among the dynamics or -1
+  std::vector<int> row_other_;                 // its index among the others, or -1
+  Eigen::Matrix<double, Dynamic, 1> arena_;
+  std::vector<Place> hessian_places_;
+  std::vector<Run> jacobian_runs_;
+  std::vector<Link> links_;
+  std::vector<int> diagonal_places_, bare_diagonals_;
+  std::vector<int> variable_places_, row_places_;  // in a vector
+  std::vector<char> fixed_state_;
+  std::vector<int> fixed_;
+  int vector_size_ = 0;
+  Vector compliance_, link_, row_scale_;
+  bool scaled_ = false, any_fixed_ = false;
+};
+
+}  // namespace tenon
