@@ -12,8 +12,8 @@ Json evaluations_json(const EvaluationCounts& counts);
 /// The field `explanation` of an end that is not `solved`, and of an infeasible one `infeasible_constraints`: what cannot be met together.
 void set_explanation(Json& json, const Nlp& problem, const Measurement& measurement);
 
-/// schema, problem, solver, status, objective, iterations, time_s, residual, residual_scaled where the solver scaled, evaluations, x, lambda,
-/// z, and the explanation.
+/// schema, problem, solver, status, objective, iterations, time_s, residual, residual_scaled where the solver scaled, evaluations, x,
+/// lambda, z, and the explanation.
 Json result_json(const Nlp& problem, const Measurement& measurement);
 
 }  // namespace tenon

@@ -23,7 +23,9 @@
 namespace tenon {
 
 /// The square of a number, so that formulas may say it of either kind.
-inline double square(double x) { return x * x; }
+inline double square(double x) {
+  return x * x;
+}
 
 /// Values, Jacobian, and what the Hessian of any combination of M functions of N variables is made of.
 template <int N, int M>
@@ -80,12 +82,16 @@ class Automatic {
     if constexpr (requires { user_.bounds(bounds); }) user_.bounds(bounds);
   }
   void initial_point(VectorN& x) const {
-    if constexpr (requires { user_.initial_point(x); }) user_.initial_point(x);
-    else x.setZero();
+    if constexpr (requires { user_.initial_point(x); })
+      user_.initial_point(x);
+    else
+      x.setZero();
   }
   std::string name() const {
-    if constexpr (requires { user_.name(); }) return user_.name();
-    else return "problem";
+    if constexpr (requires { user_.name(); })
+      return user_.name();
+    else
+      return "problem";
   }
 
   void prepare(const VectorN&, Workspace& at) const { at.is_differentiated = false; }

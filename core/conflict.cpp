@@ -16,11 +16,11 @@ constexpr double kMaxEntries = 4e6;                 // of the dense least-square
 
 /// One side of a row or variable:  sign (value - bound) <= 0
 struct Side {
-  int index;      // row j, or variable i
+  int index;  // row j, or variable i
   bool is_bound;
-  double sign;    // +1: upper, -1: lower
-  double room;    // b: distance to the bound, < 0 outside
-  double size;    // of the bound
+  double sign;  // +1: upper, -1: lower
+  double room;  // b: distance to the bound, < 0 outside
+  double size;  // of the bound
 };
 
 void add_sides(int index, bool is_bound, double value, double lower, double upper, std::vector<Side>& sides) {
@@ -30,7 +30,8 @@ void add_sides(int index, bool is_bound, double value, double lower, double uppe
 
 class Contradiction {
  public:
-  Contradiction(const Nlp& problem, const Vector& x) : problem_(problem), x_(x), here_(problem, x), rows_(here_.jacobian), bounds_(n(), m()) {
+  Contradiction(const Nlp& problem, const Vector& x)
+      : problem_(problem), x_(x), here_(problem, x), rows_(here_.jacobian), bounds_(n(), m()) {
     problem.bounds(bounds_);
     for (const SoftRow& soft : problem.soft_rows()) bounds_.compliance[soft.row] = kInfinity<double>;
     for (int j = 0; j < m(); ++j) {

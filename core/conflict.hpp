@@ -4,8 +4,8 @@
 //
 //     some y >= 0 has   sum_K y_k a_k = 0,   sum_K y_k b_k < 0                                          [Farkas 1902]     (1)
 //
-// which least squares looks for:  min | [ a_k' ; b_k ] y - (0, ..., 0, -1) |  s.t.  y >= 0 (nonnegative_least_squares.hpp). Its columns with
-// y > 0 are linearly independent, so that (1) fails for every smaller set of them: K is irreducible. Where the rows are linear, K is a
+// which least squares looks for:  min | [ a_k' ; b_k ] y - (0, ..., 0, -1) |  s.t.  y >= 0 (nonnegative_least_squares.hpp). Its columns
+// with y > 0 are linearly independent, so that (1) fails for every smaller set of them: K is irreducible. Where the rows are linear, K is a
 // proof; else it says what holds to first order at x, and at a stationary point of the violation (an infeasible end) there is such a K.
 #pragma once
 
@@ -19,11 +19,11 @@ namespace tenon {
 /// A row, or a variable with its bounds, at a point.
 struct Limit {
   std::string name;
-  bool is_bound = false;      // the name is a variable's
-  double value = 0;           // of the row or variable
+  bool is_bound = false;  // the name is a variable's
+  double value = 0;       // of the row or variable
   double lower = 0, upper = 0;
-  double violation = 0;       // how far outside, 0 within
-  double multiplier = 0;      // its y of (1), largest 1; > 0: its upper side hurts, < 0: its lower one
+  double violation = 0;   // how far outside, 0 within
+  double multiplier = 0;  // its y of (1), largest 1; > 0: its upper side hurts, < 0: its lower one
 };
 
 /// An irreducible set of rows and bounds that, linearised at x, no step meets together; worst violation first. Empty where there is none,

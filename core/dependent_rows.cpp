@@ -14,7 +14,9 @@ namespace {
 constexpr double kActive = 1e-6;     // relative distance at which a bound counts as reached
 constexpr double kDependent = 1e-8;  // what is left of a gradient of length 1 after the others are projected out
 
-bool is_at(double value, double bound) { return std::isfinite(bound) && std::abs(value - bound) <= kActive * std::max(1.0, std::abs(bound)); }
+bool is_at(double value, double bound) {
+  return std::isfinite(bound) && std::abs(value - bound) <= kActive * std::max(1.0, std::abs(bound));
+}
 
 bool is_active(double value, double lower, double upper) {
   return value <= lower || value >= upper || is_at(value, lower) || is_at(value, upper);
@@ -41,8 +43,10 @@ std::vector<DependentRow> dependent_rows(const Nlp& problem, const Vector& x) {
       if (!is_active(x[i], bounds.x_lower[i], bounds.x_upper[i]) && std::abs(entry.value()) > kDependent * length)
         entries.emplace_back(i, static_cast<int>(active.size()), entry.value() / length);
     }
-    if (entries.size() > before) active.push_back(j);
-    else found.push_back({j, {}});
+    if (entries.size() > before)
+      active.push_back(j);
+    else
+      found.push_back({j, {}});
   }
   if (active.empty()) return found;
 

@@ -12,9 +12,9 @@ namespace tenon {
 
 namespace {
 
-constexpr std::size_t kMostNamed = 6;       // names in a sentence
-constexpr int kMostDifferentiated = 200;    // variables of a problem whose derivatives are checked
-constexpr double kDerivativeError = 1e-4;   // far above the error of differences: a wrong formula
+constexpr std::size_t kMostNamed = 6;      // names in a sentence
+constexpr int kMostDifferentiated = 200;   // variables of a problem whose derivatives are checked
+constexpr double kDerivativeError = 1e-4;  // far above the error of differences: a wrong formula
 constexpr double kActive = 1e-6;
 
 std::string number(double value) {
@@ -31,10 +31,14 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-std::string range(double lower, double upper) { return "[" + number(lower) + ", " + number(upper) + "]"; }
+std::string range(double lower, double upper) {
+  return "[" + number(lower) + ", " + number(upper) + "]";
+}
 
 std::string standing(double value, double lower, double upper) {
-  const auto at = [value](double bound) { return std::isfinite(bound) && std::abs(value - bound) <= kActive * std::max(1.0, std::abs(bound)); };
+  const auto at = [value](double bound) {
+    return std::isfinite(bound) && std::abs(value - bound) <= kActive * std::max(1.0, std::abs(bound));
+  };
   if (lower == upper) return at(lower) ? "met" : "not met";
   if (at(lower)) return "active at its lower bound";
   if (at(upper)) return "active at its upper bound";
@@ -64,12 +68,12 @@ class Examination {
       if (!std::isfinite(here_.constraints[j])) say("row " + problem_.constraint_name(j), here_.constraints[j], variables_of_row(j));
     }
     for (int i = 0; i < n(); ++i) {
-      if (!std::isfinite(here_.gradient[i]))
-        say("the objective's derivative by " + problem_.variable_name(i), here_.gradient[i], {i});
+      if (!std::isfinite(here_.gradient[i])) say("the objective's derivative by " + problem_.variable_name(i), here_.gradient[i], {i});
       for (SparseMatrix::InnerIterator entry(here_.jacobian, i); entry; ++entry) {
         const int j = static_cast<int>(entry.row());
         if (!std::isfinite(entry.value()))
-          say("the derivative of row " + problem_.constraint_name(j) + " by " + problem_.variable_name(i), entry.value(), variables_of_row(j));
+          say("the derivative of row " + problem_.constraint_name(j) + " by " + problem_.variable_name(i), entry.value(),
+              variables_of_row(j));
       }
     }
     if (found.empty()) add_hessian(say);
@@ -92,8 +96,8 @@ class Examination {
     if (m() > 0) {
       const double violation = (bounds_.c_lower - rows).cwiseMax(rows - bounds_.c_upper).maxCoeff(&j);
       if (violation > 0) {
-        found.push_back("the largest violation of a row is " + number(violation) + ": " + problem_.constraint_name(static_cast<int>(j)) + " = " +
-                        number(rows[j]) + ", not in " + range(bounds_.c_lower[j], bounds_.c_upper[j]));
+        found.push_back("the largest violation of a row is " + number(violation) + ": " + problem_.constraint_name(static_cast<int>(j)) +
+                        " = " + number(rows[j]) + ", not in " + range(bounds_.c_lower[j], bounds_.c_upper[j]));
       }
     }
     if (n() > 0) {
@@ -170,8 +174,8 @@ class Examination {
 };
 
 std::string say(const Limit& limit) {
-  return (limit.is_bound ? "the bounds of " : "row ") + limit.name + " = " + number(limit.value) + ", in " + range(limit.lower, limit.upper) +
-         ": violated by " + number(limit.violation) + ", multiplier " + number(limit.multiplier);
+  return (limit.is_bound ? "the bounds of " : "row ") + limit.name + " = " + number(limit.value) + ", in " +
+         range(limit.lower, limit.upper) + ": violated by " + number(limit.violation) + ", multiplier " + number(limit.multiplier);
 }
 
 void say_conflict(const std::vector<Limit>& limits, Explanation& out) {
@@ -193,8 +197,9 @@ void explain_dependence(const Nlp& problem, const Point& point, Explanation& out
   for (const DependentRow& dependent : dependent_rows(problem, point.x)) {
     std::vector<std::string> others;
     for (const int j : dependent.on) others.push_back(problem.constraint_name(j));
-    out.sentences.push_back("the gradient of row " + problem.constraint_name(dependent.row) +
-                            (others.empty() ? " is 0 in all variables that are off their bounds" : " depends on that of " + joined(others)));
+    out.sentences.push_back(
+        "the gradient of row " + problem.constraint_name(dependent.row) +
+        (others.empty() ? " is 0 in all variables that are off their bounds" : " depends on that of " + joined(others)));
   }
 }
 
@@ -228,7 +233,10 @@ Explanation explain(const Nlp& problem, const Point& point, const Result& result
     explain_infeasible(problem, point, out);
     return out;
   }
-  if (result.status == Status::unbounded) out.sentences.push_back(examination.runaway());
+  if (result.status == Status::unbounded) {
+    out.sentences.push_back(examination.runaway());
+    return out;
+  }
   for (const std::string& sentence : examination.worst_parts()) out.sentences.push_back(sentence);
   if (result.residual.primal > kActive) {
     const std::vector<Limit> limits = conflict(problem, point.x);

@@ -25,7 +25,9 @@ Point random_start(const Bounds& bounds, const Point& centre, std::mt19937_64& r
   return start;
 }
 
-bool is_same(const Vector& a, const Vector& b) { return ((a - b).array().abs() <= kSame * a.array().abs().max(1.0)).all(); }
+bool is_same(const Vector& a, const Vector& b) {
+  return ((a - b).array().abs() <= kSame * a.array().abs().max(1.0)).all();
+}
 
 void add_solution(std::vector<Optimum>& optima, Optimum&& found) {
   for (Optimum& known : optima) {
@@ -58,8 +60,10 @@ MultiStart multi_start(const Nlp& problem, Solver& solver, const Point& start, i
       add_solution(out.optima, std::move(end));
     } else {
       ++out.failed;
-      if (failures.empty()) failures.push_back(std::move(end));
-      else if (end.result.residual.max_scaled() < failures[0].result.residual.max_scaled()) failures[0] = std::move(end);
+      if (failures.empty())
+        failures.push_back(std::move(end));
+      else if (end.result.residual.max_scaled() < failures[0].result.residual.max_scaled())
+        failures[0] = std::move(end);
     }
     if (status == Status::stopped) break;
   }

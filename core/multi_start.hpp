@@ -26,8 +26,8 @@ struct MultiStart {
 ///
 ///     [x_lower, x_upper]  and  [x_s - r, x_s + r],   r = 10 max(1, |x_s|)        x_s: the start, inside its bounds
 ///
-/// with multipliers 0. Two solutions are one where their x agree within 1e-4 max(1, |x|). The same seed gives the same points. Ends early where
-/// a solve was stopped by its observer. Throws std::invalid_argument where starts < 1, and what the solver throws.
+/// with multipliers 0. Two solutions are one where their x agree within 1e-4 max(1, |x|). The same seed gives the same points. Ends early
+/// where a solve was stopped by its observer. Throws std::invalid_argument where starts < 1, and what the solver throws.
 MultiStart multi_start(const Nlp& problem, Solver& solver, const Point& start, int starts, std::uint64_t seed);
 
 }  // namespace tenon

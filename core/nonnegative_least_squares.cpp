@@ -29,7 +29,7 @@ Vector nonnegative_least_squares(const Eigen::MatrixXd& A, const Vector& b) {
   Vector y = Vector::Zero(A.cols());
   if (A.cols() == 0) return y;
   const double threshold = kOptimal * b.norm() * A.colwise().norm().maxCoeff();
-  std::vector<int> positive;                                       // the columns where y > 0
+  std::vector<int> positive;                                      // the columns where y > 0
   std::vector<bool> refused(static_cast<std::size_t>(A.cols()));  // positive already, or found to be dependent on those
   for (Eigen::Index round = 0; round < 3 * A.cols(); ++round) {
     const int entering = entering_column(A, b - A * y, threshold, refused);

@@ -52,8 +52,8 @@ class QuasiNewtonNlp final : public NlpDecorator {
     Linearisation here, last;
     bool has_last = false, has_curvature = false;
     int epoch = 0;
-    Eigen::MatrixXd B;     // the lower triangle
-    Vector s, y, Bs;       // room for (1)
+    Eigen::MatrixXd B;  // the lower triangle
+    Vector s, y, Bs;    // room for (1)
   };
   static Memory& memory(Workspace& workspace) { return static_cast<Memory&>(*workspace); }
   static void update(Memory& at);

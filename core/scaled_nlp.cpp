@@ -11,7 +11,9 @@ namespace {
 constexpr double kLargestDerivative = 10;  // g
 constexpr double kSmallestFactor = 1e-8;
 
-double power_of_two_below(double value) { return std::ldexp(1.0, std::ilogb(value)); }
+double power_of_two_below(double value) {
+  return std::ldexp(1.0, std::ilogb(value));
+}
 
 double factor_for(double largest_derivative) {
   if (!std::isfinite(largest_derivative) || largest_derivative <= kLargestDerivative) return 1;
@@ -20,7 +22,8 @@ double factor_for(double largest_derivative) {
 
 void check_nominal(const std::string& name, double value) {
   if (!(value >= 0) || std::isinf(value)) {
-    throw std::invalid_argument("the nominal value of " + name + " is " + std::to_string(value) + " (expected > 0 and finite, or 0: not stated)");
+    throw std::invalid_argument("the nominal value of " + name + " is " + std::to_string(value) +
+                                " (expected > 0 and finite, or 0: not stated)");
   }
 }
 
@@ -57,7 +60,9 @@ void ScaledNlp::choose(const Vector& gradient, std::span<const double> jacobian)
   update_entries();
 }
 
-bool ScaledNlp::has_flat_rows() const { return (largest_.array() == 0).any(); }
+bool ScaledNlp::has_flat_rows() const {
+  return (largest_.array() == 0).any();
+}
 
 void ScaledNlp::choose_flat_rows(std::span<const double> jacobian) {
   measure_rows(jacobian, elsewhere_);
@@ -89,7 +94,9 @@ void ScaledNlp::update_entries() {
   identity_ = s_ == 1 && (dx_.array() == 1).all() && (dc_.array() == 1).all();
 }
 
-double ScaledNlp::smallest_factor() const { return dc_.size() == 0 ? s_ : std::min(s_, dc_.minCoeff()); }
+double ScaledNlp::smallest_factor() const {
+  return dc_.size() == 0 ? s_ : std::min(s_, dc_.minCoeff());
+}
 
 void ScaledNlp::scale(Point& point) const {
   point.x.array() /= dx_.array();

@@ -67,10 +67,10 @@ class ScaledNlp final : public NlpDecorator {
 
   const SparsePattern jacobian_pattern_, hessian_pattern_;
   double s_ = 1;
-  Vector dx_, dc_;                 // n, m
-  Vector largest_, elsewhere_;     // m: the largest derivative of each row
-  std::vector<bool> stated_;       // m: the row has a nominal value
-  Vector jacobian_, hessian_;      // the factor of each entry of the patterns: d_c,i d_x,j and d_x,i d_x,j
+  Vector dx_, dc_;              // n, m
+  Vector largest_, elsewhere_;  // m: the largest derivative of each row
+  std::vector<bool> stated_;    // m: the row has a nominal value
+  Vector jacobian_, hessian_;   // the factor of each entry of the patterns: d_c,i d_x,j and d_x,i d_x,j
   bool identity_ = true;
 };
 

@@ -4,7 +4,7 @@
 //
 //     (x y):  v = x' y + y' x,  w = x'' y + y'' x + 2 x' y'        f(x):  v = f' x',  w = f'' x'^2 + f' x''                          (1)
 //
-// componentwise in d, which is one vector instruction for four directions. The directions are e_i + e_j for i < j and e_i for i = j, so that
+// componentwise in d, which is one vector instruction for four of them. The directions are e_i + e_j for i < j and e_i for i = j, so that
 //
 //     gradient_i = v_ii,   Hessian_ii = w_ii,   Hessian_ij = (w_ij - w_ii - w_jj)/2                                                   (2)
 //
@@ -44,9 +44,7 @@ class SecondOrder {
   }
 
   /// f(x) where f, its first and its second derivative at x are these.  (1)
-  friend SecondOrder chain(const SecondOrder& x, Scalar f, Scalar f1, Scalar f2) {
-    return {f, f1 * x.v_, f1 * x.w_ + f2 * x.v_ * x.v_};
-  }
+  friend SecondOrder chain(const SecondOrder& x, Scalar f, Scalar f1, Scalar f2) { return {f, f1 * x.v_, f1 * x.w_ + f2 * x.v_ * x.v_}; }
 
   friend SecondOrder operator+(const SecondOrder& x, const SecondOrder& y) { return {x.value_ + y.value_, x.v_ + y.v_, x.w_ + y.w_}; }
   friend SecondOrder operator-(const SecondOrder& x, const SecondOrder& y) { return {x.value_ - y.value_, x.v_ - y.v_, x.w_ - y.w_}; }

@@ -20,8 +20,8 @@ void check(const Nlp& problem, const std::vector<SoftRow>& soft) {
     if (!seen.insert(s.row).second) throw std::invalid_argument("row " + name + " is declared soft twice (expected one pair of weights)");
     const auto makes_sense = [](double weight) { return weight >= 0 && std::isfinite(weight); };
     if (!makes_sense(s.linear) || !makes_sense(s.quadratic) || s.linear + s.quadratic == 0) {
-      throw std::invalid_argument("soft row " + name + " has the weights " + std::to_string(s.linear) + " and " + std::to_string(s.quadratic) +
-                                  " (expected 0 or more, finite, not both 0)");
+      throw std::invalid_argument("soft row " + name + " has the weights " + std::to_string(s.linear) + " and " +
+                                  std::to_string(s.quadratic) + " (expected 0 or more, finite, not both 0)");
     }
   }
 }

@@ -1,10 +1,11 @@
 // Automatic derivatives: exact for every function there is, for a whole problem written once, and for one interval of a cart-pole.
+#include "tenon/core/automatic.hpp"
+
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "tenon/core/as_nlp.hpp"
-#include "tenon/core/automatic.hpp"
 #include "tenon/core/check_derivatives.hpp"
 #include "tenon/solvers/make_solver.hpp"
 #include "tenon/solvers/newton_kkt/newton_kkt.hpp"
@@ -46,7 +47,8 @@ struct EveryFunction {
   void constraints(const std::array<T, 3>& x, std::array<T, 14>& c) const {
     using std::sin, std::cos, std::tan, std::atan, std::tanh, std::exp, std::log, std::sqrt, std::pow, std::abs;
     const T u = x[0] + 0.3 * x[1] * x[2];
-    c = {sin(u), cos(u), tan(u), atan(u), tanh(u), exp(u), log(u), sqrt(u), pow(u, 2.7), abs(-u), square(u), 1 / u, x[0] / (x[1] + x[2]), T(3)};
+    c = {sin(u), cos(u), tan(u), atan(u), tanh(u), exp(u), log(u), sqrt(u), pow(u, 2.7), abs(-u), square(u), 1 / u, x[0] / (x[1] + x[2]),
+         T(3)};
     c[13] -= u;
     c[13] *= x[2];
     c[13] /= 2 - x[0] / 4;
@@ -76,7 +78,8 @@ struct CartPoleStep {
     const auto ahead = [&](double h, const std::array<T, 4>& k) {
       return std::array<T, 4>{start[0] + h * k[0], start[1] + h * k[1], start[2] + h * k[2], start[3] + h * k[3]};
     };
-    const auto k1 = rate(start, x[4]), k2 = rate(ahead(kStep / 2, k1), x[4]), k3 = rate(ahead(kStep / 2, k2), x[4]), k4 = rate(ahead(kStep, k3), x[4]);
+    const auto k1 = rate(start, x[4]), k2 = rate(ahead(kStep / 2, k1), x[4]), k3 = rate(ahead(kStep / 2, k2), x[4]),
+               k4 = rate(ahead(kStep, k3), x[4]);
     for (std::size_t i = 0; i < 4; ++i) end[i] = start[i] + kStep / 6 * (k1[i] + 2 * (k2[i] + k3[i]) + k4[i]);
   }
 };
@@ -98,9 +101,15 @@ void expect_exact(double low, double high) {
   }
 }
 
-TEST(Automatic, EveryFunctionObeysTheDerivativeLaw) { expect_exact<EveryFunction>(0.2, 1.2); }
-TEST(Automatic, AWholeProblemObeysTheDerivativeLaw) { expect_exact<ProductAndSphere>(1, 5); }
-TEST(Automatic, AnIntervalOfACartPoleObeysTheDerivativeLaw) { expect_exact<CartPoleStep>(-2, 2); }
+TEST(Automatic, EveryFunctionObeysTheDerivativeLaw) {
+  expect_exact<EveryFunction>(0.2, 1.2);
+}
+TEST(Automatic, AWholeProblemObeysTheDerivativeLaw) {
+  expect_exact<ProductAndSphere>(1, 5);
+}
+TEST(Automatic, AnIntervalOfACartPoleObeysTheDerivativeLaw) {
+  expect_exact<CartPoleStep>(-2, 2);
+}
 
 TEST(Automatic, DerivativesAreThoseByHandToRounding) {
   const Automatic<ProductAndSphere> problem;

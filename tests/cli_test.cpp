@@ -127,6 +127,7 @@ TEST_F(CommandLine, RefusesBadUsage) {
   expect_bad_input("solve hs071 --solver ipop", "unknown solver");
   expect_bad_input("solve hs071 --tolerance much", "solve: --tolerance = much makes no sense (expected a number)");
   expect_bad_input("solve hs071 --tolerance nan", "solve: --tolerance: nan is not finite");
+  expect_bad_input("solve hs071 --starts 0", "solve: --starts: Value 0 not in range");
   expect_bad_input("solve hs071 --tolerance -1", "option tolerance");
   expect_bad_input("compare hs071 --solvers ipop", "unknown solver 'ipop', the nearest is 'ipopt'");
   expect_bad_input("list fruit", "list: unknown kind 'fruit'");
@@ -184,6 +185,12 @@ TEST_F(CommandLine, ListsSolvesChecksComparesAndFits) {
   EXPECT_NE(solved.err.find("objective"), std::string::npos);
   EXPECT_TRUE(folder_.read("trace.jsonl").starts_with("{\"index\":0,\"objective\":"));
   EXPECT_EQ(run("solve hs071 --max-iterations 1").code, 1);
+  EXPECT_NE(run("solve hs071 --max-iterations 1").out.find("stationarity is worst"), std::string::npos);
+  const Ended strewn = run("solve hs044 --starts 30 --seed 2");
+  EXPECT_EQ(strewn.code, 0);
+  EXPECT_TRUE(strewn.out.starts_with("30 starts, 0 failed; 2 distinct:")) << strewn.out;
+  EXPECT_NE(strewn.out.find("found"), std::string::npos);
+  EXPECT_NE(run("solve hs044 --starts 3 --json").out.find("\"tried\": 3"), std::string::npos);
   EXPECT_EQ(run("check hs071").code, 0);
   EXPECT_NE(run("compare hs071 hs035").out.find("hs035"), std::string::npos);
   folder_.write("bench.csv", "u,thrust,torque\n.3,3.93,.05\n.5,7,.09\n.7,10.83,.15\n.9,16.44,.22\n1,19.94,.27\n");

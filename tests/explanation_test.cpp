@@ -1,5 +1,7 @@
 // What a failed solve says: exactly the rows that conflict, the value that is not finite and where, the derivative that is wrong, the row
 // that depends on others, what is worst; and no failure is called solved.
+#include "tenon/core/explanation.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,7 +9,6 @@
 
 #include "small_problems.hpp"
 #include "tenon/core/dependent_rows.hpp"
-#include "tenon/core/explanation.hpp"
 #include "tenon/core/nlp_decorator.hpp"
 #include "tenon/core/nonnegative_least_squares.hpp"
 #include "tenon/problems/catalogue.hpp"
@@ -55,9 +56,12 @@ PolynomialNlp planted(unsigned seed, bool curved) {
   PolynomialProgram program{.name = "planted", .start = Vector::Zero(20)};
   for (int i = 0; i < 20; ++i) program.objective += square(x[std::size_t(i)] - coefficient(random));
   for (int j = 0; j < 50; ++j) {
-    if (j == 7) program.rows.push_back(at_least_zero(x[0] + x[1] - 3));
-    else if (j == 23) program.rows.push_back(at_least_zero(1 - x[1] + x[2]));
-    else if (j == 41) program.rows.push_back(at_least_zero(1.5 - x[0] - x[2]));
+    if (j == 7)
+      program.rows.push_back(at_least_zero(x[0] + x[1] - 3));
+    else if (j == 23)
+      program.rows.push_back(at_least_zero(1 - x[1] + x[2]));
+    else if (j == 41)
+      program.rows.push_back(at_least_zero(1.5 - x[0] - x[2]));
     else {
       Polynomial row;
       for (int k = 0; k < 4; ++k) {
@@ -188,7 +192,8 @@ TEST(Explanation, ARowThatDependsOnOthersIsNamedWithThem) {
 
 TEST(Explanation, ARowWithoutAGradientIsNamed) {
   const auto x = polynomial_variables(2);
-  const PolynomialNlp problem({.name = "flat", .start = vector({0, 0}), .objective = x[0] + x[1], .rows = {equals_zero(square(x[0]) + square(x[1]))}});
+  const PolynomialNlp problem(
+      {.name = "flat", .start = vector({0, 0}), .objective = x[0] + x[1], .rows = {equals_zero(square(x[0]) + square(x[1]))}});
   const Ended ended = solve(problem);
   EXPECT_THAT(explain(problem, Point(2, 1), ended_with(Status::numerical_failure)).text(), HasSubstr("gradient of row c[0] is 0"));
   EXPECT_TRUE(ended.result.status != Status::solved || ended.result.residual.max_scaled() <= 1e-8);
@@ -208,7 +213,9 @@ TEST(Explanation, AnUnboundedEndNamesWhatRanAway) {
   EXPECT_THAT(ended.explanation.text(), HasSubstr("has run furthest"));
 }
 
-TEST(Explanation, ASolvedProblemNeedsNone) { EXPECT_THAT(solve(*find_problem("hs071").make()).explanation.sentences, IsEmpty()); }
+TEST(Explanation, ASolvedProblemNeedsNone) {
+  EXPECT_THAT(solve(*find_problem("hs071").make()).explanation.sentences, IsEmpty());
+}
 
 TEST(NonnegativeLeastSquares, ItsAnswerIsStationaryOnRandomProblems) {
   std::mt19937 random(5);

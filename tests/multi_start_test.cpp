@@ -1,8 +1,9 @@
 // Many starts find many optima, the same ones every time, and the best of them comes first.
+#include "tenon/core/multi_start.hpp"
+
 #include <gtest/gtest.h>
 
 #include "small_problems.hpp"
-#include "tenon/core/multi_start.hpp"
 #include "tenon/problems/catalogue.hpp"
 #include "tenon/solvers/make_solver.hpp"
 
@@ -78,7 +79,9 @@ TEST(MultiStart, AnObserverThatStopsASolveStopsThemAll) {
   EXPECT_LT(found.starts, 50);
 }
 
-TEST(MultiStart, NoStartIsAnError) { EXPECT_THROW(run(four_wells(), 0, 1), std::invalid_argument); }
+TEST(MultiStart, NoStartIsAnError) {
+  EXPECT_THROW(run(four_wells(), 0, 1), std::invalid_argument);
+}
 
 }  // namespace
 }  // namespace tenon

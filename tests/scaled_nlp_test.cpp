@@ -1,5 +1,7 @@
 // Scaling: the same problem in other units has the same derivatives law, the same point, the same multipliers; it helps where a problem is
 // badly scaled and changes nothing where none is needed.
+#include "tenon/core/scaled_nlp.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +9,6 @@
 
 #include "small_problems.hpp"
 #include "tenon/core/check_derivatives.hpp"
-#include "tenon/core/scaled_nlp.hpp"
 #include "tenon/problems/catalogue.hpp"
 #include "tenon/solvers/make_solver.hpp"
 
@@ -181,7 +182,8 @@ TEST(ScaledNlp, BadUnitsDoNotChangeTheAnswer) {
     ASSERT_TRUE(succeeded(plain.result.status)) << entry.name;
     EXPECT_TRUE(succeeded(scaled.result.status)) << entry.name << ": " << to_string(scaled.result.status);
     if (entry.name == "hs044") continue;  // two local optima: the other units lead to the better one
-    EXPECT_NEAR(scaled.result.objective / BadlyScaled::kUnit, plain.result.objective, 1e-5 * std::max(1.0, std::abs(plain.result.objective)))
+    EXPECT_NEAR(scaled.result.objective / BadlyScaled::kUnit, plain.result.objective,
+                1e-5 * std::max(1.0, std::abs(plain.result.objective)))
         << entry.name;
     EXPECT_LE(scaled.result.iterations, 2 * plain.result.iterations + 10) << entry.name;
   }

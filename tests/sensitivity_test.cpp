@@ -1,8 +1,9 @@
 // The solution's derivatives by parameters, against differences of solutions.
+#include "tenon/core/sensitivity.hpp"
+
 #include <gtest/gtest.h>
 
 #include "small_problems.hpp"
-#include "tenon/core/sensitivity.hpp"
 #include "tenon/problems/catalogue.hpp"
 #include "tenon/solvers/make_solver.hpp"
 
@@ -60,8 +61,10 @@ class Moved final : public ParametricNlp {
 
 Point solution(const Nlp& problem, const Point* start = nullptr) {
   Point point(problem.num_variables(), problem.num_constraints());
-  if (start != nullptr) point = *start;
-  else problem.initial_point(point.x);
+  if (start != nullptr)
+    point = *start;
+  else
+    problem.initial_point(point.x);
   const Result result = make_solver("newton-kkt", problem, {.tolerance = 1e-11, .warm_start = start != nullptr})->solve(point);
   EXPECT_LE(result.residual.max_scaled(), 1e-9) << to_string(result.status);
   return point;
@@ -90,7 +93,9 @@ TEST_P(SolutionMoves, AsDifferencesOfSolutionsSay) {
       const Vector difference = (plus - minus) / (2 * h);
       if (difference.size() == 0) return;
       EXPECT_LE((slope.col(k) - difference).lpNorm<Eigen::Infinity>(), 1e-3 * std::max(1.0, difference.lpNorm<Eigen::Infinity>()))
-          << what << " by p" << k << "\n" << slope.col(k).transpose() << "\n" << difference.transpose();
+          << what << " by p" << k << "\n"
+          << slope.col(k).transpose() << "\n"
+          << difference.transpose();
     };
     close(slopes.x, ahead.x, behind.x, "x");
     close(slopes.lambda, ahead.lambda, behind.lambda, "lambda");

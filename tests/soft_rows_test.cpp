@@ -99,9 +99,8 @@ TEST(SoftRows, AWeightBelowTheMultiplierIsTheMultiplier) {
 TEST(SoftRows, OfRowsThatContradictTheCheapestGivesWayAndTheOthersAreMet) {
   // x >= 3 (weight 5), x <= 1 (weight 2), x = 2 (weight 1): the weighted sum of violations is least at x = 3
   const auto x = polynomial_variables(1);
-  const PolynomialNlp problem({.name = "opposed",
-                               .start = vector({0}),
-                               .rows = {at_least_zero(x[0] - 3), at_least_zero(1 - x[0]), equals_zero(x[0] - 2)}});
+  const PolynomialNlp problem(
+      {.name = "opposed", .start = vector({0}), .rows = {at_least_zero(x[0] - 3), at_least_zero(1 - x[0]), equals_zero(x[0] - 2)}});
   const Solved solved = solve(Softened(problem, {{0, 5}, {1, 2}, {2, 1}}));
   EXPECT_EQ(solved.result.status, Status::solved);
   EXPECT_NEAR(solved.point.x[0], 3, 1e-6);
