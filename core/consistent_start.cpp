@@ -1,5 +1,6 @@
 #include "tenon/core/consistent_start.hpp"
 
+#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 
@@ -21,7 +22,12 @@ std::string IndexDiagnosis::text() const {
   return text;
 }
 
-ConsistentStart::ConsistentStart(const Dae& dae) : dae_(dae), pattern_(dae.jacobian_pattern()), A_(pattern_.zero_matrix()) {
+struct ConsistentStart::Factorisation {
+  Eigen::SparseLU<SparseMatrix> lu;
+};
+
+ConsistentStart::ConsistentStart(const Dae& dae)
+    : dae_(dae), pattern_(dae.jacobian_pattern()), A_(pattern_.zero_matrix()), lu_(std::make_unique<Factorisation>()) {
   with_alpha_.resize(pattern_.inner.size());
   without_.resize(pattern_.inner.size());
   F_.resize(pattern_.rows);
@@ -42,15 +48,18 @@ void ConsistentStart::evaluate(const DaeState& state, Dae::Workspace& workspace)
   }
 }
 
+ConsistentStart::~ConsistentStart() = default;
+
 bool ConsistentStart::solve(DaeState& state, Dae::Workspace& workspace) {
   const int nx = dae_.num_states(), ny = dae_.num_algebraics();
   for (int k = 0; k < kMaxIterations; ++k) {
     evaluate(state, workspace);
     if (!F_.allFinite()) return false;
-    if (k == 0) lu_.analyzePattern(A_);
-    lu_.factorize(A_);
-    if (lu_.info() != Eigen::Success) return false;
-    step_ = lu_.solve(-F_);
+    Eigen::SparseLU<SparseMatrix>& lu = lu_->lu;
+    if (k == 0) lu.analyzePattern(A_);
+    lu.factorize(A_);
+    if (lu.info() != Eigen::Success) return false;
+    step_ = lu.solve(-F_);
     if (!step_.allFinite()) return false;
     state.xdot += step_.head(nx);
     state.y += step_.tail(ny);

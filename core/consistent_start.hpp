@@ -6,7 +6,7 @@
 // vector of A, w'A = 0. Source: U. M. Ascher, L. R. Petzold, Computer Methods for ODEs and DAEs, SIAM (1998), sec. 9.2 and 10.1.
 #pragma once
 
-#include <Eigen/SparseLU>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -25,6 +25,7 @@ class ConsistentStart {
  public:
   /// The Dae must outlive it. Analyses the pattern once.
   explicit ConsistentStart(const Dae& dae);
+  ~ConsistentStart();
 
   /// Finds state.xdot and state.y, starting from those that stand there; false where Newton's method fails.
   bool solve(DaeState& state, Dae::Workspace& workspace);
@@ -39,7 +40,8 @@ class ConsistentStart {
   SparsePattern pattern_;
   std::vector<double> with_alpha_, without_;  // Jacobian at alpha = 1 and 0: their difference is dF/dxdot
   SparseMatrix A_;
-  Eigen::SparseLU<SparseMatrix> lu_;
+  struct Factorisation;
+  std::unique_ptr<Factorisation> lu_;
   Vector F_, step_;
 };
 
