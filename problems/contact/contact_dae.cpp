@@ -43,6 +43,7 @@ ContactDae<D>::ContactDae(Scene<D> scene) : scene_(std::move(scene)) {
     places_.push_back(place);
     num_states_ += place.nq + place.nv;
   }
+  is_ballistic_ = scene_.forces.empty() && std::none_of(places_.begin(), places_.end(), [](Place p) { return p.nv > 3; });
   works_ = num_states_;
   force_work_.assign(scene_.forces.size(), -1);
   if (scene_.with_audit) {
@@ -59,6 +60,8 @@ ContactDae<D>::ContactDae(Scene<D> scene) : scene_(std::move(scene)) {
     order_.push_back(i);
     if (!c.is_joint()) contacts_.push_back(i);
     has_friction_ |= c.friction > 0;
+    has_one_law_ |= !c.is_joint() && !c.is_two_scale;
+    is_ballistic_ &= !c.is_joint();
   }
   const auto reach = [&](int i) {
     const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
@@ -332,10 +335,10 @@ void ContactDae<D>::guards(const DaeMode& mode, const DaePoint& at, Workspace& w
       continue;
     }
     const GapValue<double, D> g = gap_of(i, at.t, bodies);
-    if (m == kFree) values[2 * i] = g.h + kGapTolerance;
     const double hddot = -(c.law.alpha1 * g.hdot + c.law.alpha0 * g.h + c.law.alpha3 * g.h * g.h * g.h);  // by the law
-    if (m == kLeaving) {
-      values[2 * i] = g.hdot + 2 * kSpeedTolerance;
+    if (m == kFree) {
+      // falls through 0 where the gap is closed and closing; a contact just released sleeps until one of both is over
+      values[2 * i] = std::max(g.h + kGapTolerance, g.hdot + 2 * kSpeedTolerance);
       if (!c.is_two_scale && g.h <= 0 && g.hdot < -2 * kSpeedTolerance) {  // closing, but the law would pull: until it would not
         double free = g.bias;
         for (int l = 0; l < place(c.a).nv; ++l) free += g.H_A[l] * at.xdot[place(c.a).v + l];
@@ -351,18 +354,48 @@ void ContactDae<D>::guards(const DaeMode& mode, const DaePoint& at, Workspace& w
   }
 }
 
-/// Where contacts are near, no further than they take to close by half; events between two samples of a step stay visible so.
+/// Gravity alone between contacts, and no spatial body whose rotation is not uniform.
+template <int D>
+bool ContactDae<D>::has_exact_flow(const DaeMode& mode) const {
+  return is_ballistic_ && std::all_of(mode.discrete.begin(), mode.discrete.end(), [](int m) { return m == kFree; });
+}
+
+template <int D>
+void ContactDae<D>::exact_flow(const DaeMode&, double dt, ConstVectorRef x, VectorRef next) const {
+  next = x;
+  for (const Place at : places_) {
+    next.segment(at.q, at.nv) += dt * x.segment(at.v, at.nv);
+    for (int l = 0; l < std::min(D, at.nv); ++l) {
+      next[at.q + l] += 0.5 * dt * dt * scene_.gravity[l];
+      next[at.v + l] += dt * scene_.gravity[l];
+    }
+  }
+}
+
+template <int D>
+bool ContactDae<D>::guards_read_derivatives(const DaeMode& mode) const {
+  return has_one_law_ || std::any_of(contacts_.begin(), contacts_.end(), [&](int i) { return mode.discrete[static_cast<std::size_t>(i)] != kFree; });
+}
+
+/// As long as it takes to cross a shape's size at this speed and under gravity, so that nobody passes through a shape between two samples of a
+/// step; and half a radian of a turning body. A face without end has nothing behind it.
 template <int D>
 double ContactDae<D>::max_step(const DaeState& state, Workspace& workspace) const {
   auto& bodies = static_cast<Bodies&>(*workspace);
   load(state.t, state.x, bodies);
-  double longest = std::numeric_limits<double>::infinity();
+  const double infinity = std::numeric_limits<double>::infinity(), gravity = scene_.gravity.norm();
+  double longest = infinity;
   for (const int i : contacts_) {
     const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
-    if (state.mode.discrete[static_cast<std::size_t>(i)] != kFree || c.shape.vertices.empty() || c.shape.is_face()) continue;
+    if (state.mode.discrete[static_cast<std::size_t>(i)] != kFree) continue;
+    if (c.shape.is_face()) {
+      if (c.gap.a.squaredNorm() > 0 && place(c.a).nv > D) longest = std::min(longest, 0.5 / of(bodies.v, c.a).tail(kVelocities<D> - D).norm());
+      continue;
+    }
     const GapValue<double, D> g = gap_of(i, state.t, bodies);
-    const double size = std::max(c.radius, 1e-3);  // a ball that crosses a corner is near it for its own size
-    if (std::abs(g.hdot) > 0) longest = std::min(longest, (std::max(g.h, 0.0) + size) / std::abs(g.hdot));
+    const double size = c.shape.vertices.empty() && c.gap.sign < 0 ? 0.1 * c.gap.offset : std::max(c.radius, 5e-3);
+    const double way = std::max(g.h, 0.0) + size, speed = std::abs(g.hdot);
+    longest = std::min(longest, 2 * way / (speed + std::sqrt(speed * speed + 2 * gravity * way)));
   }
   return longest;
 }
@@ -413,7 +446,7 @@ void ContactDae<D>::outputs(const DaeState& state, Workspace& workspace, VectorR
   for (int k = 0; k < n; ++k) {
     const int i = contacts_[static_cast<std::size_t>(k)];
     values[k] = gap_of(i, state.t, bodies).h;
-    values[n + k] = shown(state.mode.discrete[static_cast<std::size_t>(i)]);
+    values[n + k] = state.mode.discrete[static_cast<std::size_t>(i)];
   }
   values[2 * n] = energy_of(state.t, bodies);
   if (scene_.with_audit) values[2 * n + 1] = values[2 * n] - state.mode.held[kHeldEnergy] - state.x.tail(num_states_ - works_).sum();

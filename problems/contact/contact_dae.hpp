@@ -17,12 +17,10 @@
 
 namespace tenon::contact {
 
-/// State of one contact. `leaving` is free as well, but touching: what ends it is that the gap closes again, not that it is zero.
-enum ContactMode : int { kFree = 0, kCollision = 1, kContact = 2, kLeaving = 3 };
-/// As the record shows it: 0 free, 1 collision, 2 contact.
-constexpr int shown(int mode) { return mode == kLeaving ? kFree : mode; }
+/// State of one contact, as the record shows it.
+enum ContactMode : int { kFree = 0, kCollision = 1, kContact = 2 };
 
-inline constexpr double kGapTolerance = 1e-12;     // m: a free contact's guard is h + this
+inline constexpr double kGapTolerance = 1e-12;     // m: a free contact collides where its gap closes at less than minus this
 inline constexpr double kTouching = 1e-9;          // m: gaps up to here touch
 inline constexpr double kSpeedTolerance = 1e-10;   // m/s: a gap that closes no faster stands still
 inline constexpr double kAccelerationTolerance = 1e-9;  // m/s^2
@@ -46,6 +44,9 @@ class ContactDae final : public Dae {
   void jacobian(const DaeMode& mode, const DaePoint& at, double alpha, Workspace& workspace, std::span<double> values) const override;
   bool has_derivatives() const override { return true; }
   void derivatives(const DaeMode& mode, double t, ConstVectorRef x, ConstVectorRef u, Workspace& workspace, VectorRef xdot, VectorRef y) const override;
+  bool has_exact_flow(const DaeMode& mode) const override;
+  void exact_flow(const DaeMode& mode, double dt, ConstVectorRef x, VectorRef next) const override;
+  bool guards_read_derivatives(const DaeMode& mode) const override;
   void guards(const DaeMode& mode, const DaePoint& at, Workspace& workspace, VectorRef values) const override;
   Transition transition(DaeState& state, std::span<const int> fired, Workspace& workspace, const EventLog& log) const override;
   double max_step(const DaeState& state, Workspace& workspace) const override;
@@ -85,7 +86,6 @@ class ContactDae final : public Dae {
   double* work_of(DaeState& state, int constraint) const;
 
   bool release(DaeState& state, std::span<const int> fired, const Bodies& bodies, const EventLog& log) const;
-  bool rearm(DaeState& state, const Bodies& bodies) const;
   bool begin_one_law(DaeState& state, const Bodies& bodies, const EventLog& log) const;
   bool settle_one_law(DaeState& state, const Bodies& bodies, const EventLog& log) const;
   Transition collide(DaeState& state, Bodies& bodies, const EventLog& log) const;
@@ -104,7 +104,7 @@ class ContactDae final : public Dae {
   std::vector<std::string> state_names_;
   int num_states_ = 0, works_ = 0;   // works_: where in x the first work stands
   SparsePattern pattern_;
-  bool has_friction_ = false;
+  bool has_friction_ = false, has_one_law_ = false, is_ballistic_ = true;  // is_ballistic_: between contacts nothing acts but gravity
 };
 
 /// The part of x that one body has, filled up where it has not all freedoms.

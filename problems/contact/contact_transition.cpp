@@ -28,17 +28,14 @@ Transition ContactDae<D>::transition(DaeState& state, std::span<const int> fired
   if (begin_one_law(state, bodies, log)) return {.changed = true};
   const Transition collision = collide(state, bodies, log);
   if (collision.changed || !collision.failure.empty()) return collision;
-  const bool is_rearmed = rearm(state, bodies);
-  Transition distributed = distribute(state, bodies, log);
-  distributed.changed |= is_rearmed;
-  return distributed;
+  return distribute(state, bodies, log);
 }
 
 template <int D>
 void ContactDae<D>::report(const DaeState& state, int constraint, int from, int to, const Bodies& bodies, double rate_after, double impulse,
                            double energy_after, const EventLog& log) const {
   const GapValue<double, D> g = gap_of(constraint, state.t, bodies);
-  log({state.t, scene_.constraints[static_cast<std::size_t>(constraint)].name, shown(from), shown(to), g.h, g.hdot, rate_after, impulse,
+  log({state.t, scene_.constraints[static_cast<std::size_t>(constraint)].name, from, to, g.h, g.hdot, rate_after, impulse,
        energy_of(state.t, bodies), energy_after});
 }
 
@@ -65,23 +62,8 @@ bool ContactDae<D>::release(DaeState& state, std::span<const int> fired, const B
     const double energy = energy_of(state.t, bodies);
     const GapValue<double, D> g = gap_of(i, state.t, bodies);
     report(state, i, mode, kFree, bodies, g.hdot, 0, energy, log);
-    mode = g.h > kTouching ? kFree : kLeaving;
+    mode = kFree;
     is_changed = true;
-  }
-  return is_changed;
-}
-
-/// Free contacts that have opened are watched for their gap again; those that touch, for closing.
-template <int D>
-bool ContactDae<D>::rearm(DaeState& state, const Bodies& bodies) const {
-  bool is_changed = false;
-  for (const int i : contacts_) {
-    int& mode = state.mode.discrete[static_cast<std::size_t>(i)];
-    if (mode != kFree && mode != kLeaving) continue;
-    const GapValue<double, D> g = gap_of(i, state.t, bodies);
-    const int now = g.h > (mode == kFree || g.hdot < 0 ? kGapTolerance : kTouching) ? kFree : kLeaving;
-    is_changed |= now != mode;
-    mode = now;
   }
   return is_changed;
 }
@@ -92,7 +74,7 @@ bool ContactDae<D>::begin_one_law(DaeState& state, const Bodies& bodies, const E
   for (const int i : contacts_) {
     const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
     int& mode = state.mode.discrete[static_cast<std::size_t>(i)];
-    if (c.is_two_scale || (mode != kFree && mode != kLeaving)) continue;
+    if (c.is_two_scale || mode != kFree) continue;
     const GapValue<double, D> g = gap_of(i, state.t, bodies);
     if (g.h > kClosed || g.hdot >= -kSpeedTolerance) continue;
     // where the free motion opens faster than the law would, the law would have to pull
@@ -217,11 +199,11 @@ Transition ContactDae<D>::collide(DaeState& state, Bodies& bodies, const EventLo
   for (int c = 0; c < k; ++c) {
     const int i = touching[static_cast<std::size_t>(c)];
     int& mode = state.mode.discrete[static_cast<std::size_t>(i)];
-    const int next = phase.is_held[static_cast<std::size_t>(c)] ? kContact : kLeaving;
+    const int next = phase.is_held[static_cast<std::size_t>(c)] ? kContact : kFree;
     if (scene_.with_audit) state.x[works_ + i] += phase.works[c];
     const int from = phase.impulses[c] > 0 && mode != kContact ? kCollision : mode;
-    if (shown(from) != shown(next)) {
-      log({state.t, scene_.constraints[static_cast<std::size_t>(i)].name, shown(from), shown(next), gaps[static_cast<std::size_t>(c)].h, phase.rates[c],
+    if (from != next) {
+      log({state.t, scene_.constraints[static_cast<std::size_t>(i)].name, from, next, gaps[static_cast<std::size_t>(c)].h, phase.rates[c],
            phase.rates[c], phase.impulses[c], energy, energy});
     }
     mode = next;
@@ -278,14 +260,14 @@ Transition ContactDae<D>::distribute(DaeState& state, Bodies& bodies, const Even
     }
     if (worst < 0) break;
     int& mode = trial.discrete[static_cast<std::size_t>(worst)];
-    mode = mode == kContact ? kLeaving : kContact;
+    mode = mode == kContact ? kFree : kContact;
     solve();
   }
   if (trial == state.mode) return {};
   const double energy = energy_of(state.t, bodies);
   for (const int i : candidates) {
     const int from = state.mode.discrete[static_cast<std::size_t>(i)], to = trial.discrete[static_cast<std::size_t>(i)];
-    if (shown(from) == shown(to)) continue;
+    if (from == to) continue;
     report(state, i, from, to, bodies, gap_of(i, state.t, bodies).hdot, 0, energy, log);
   }
   state.mode = trial;

@@ -14,7 +14,7 @@ namespace tenon::contact {
 namespace {
 
 constexpr double kOpenJoint = 1e-6;       // m or rad: a joint further apart cannot be closed by rounding
-constexpr double kDefaultPole = 50;       // 1/s: of a contact's law after its collision, and of joints
+constexpr double kDefaultPole = 5;        // 1/s: of a contact's law after its collision, and of joints
 
 const std::vector<std::string> kSimulationKeys{"space", "gravity", "duration", "output_step", "rtol", "atol", "integrator", "impact_law", "audit",
                                                "record_fast_phase"};
