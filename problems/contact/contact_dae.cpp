@@ -155,12 +155,6 @@ Velocities<double, D> own_force(const Body<D>& body, const Point<double, D>& gra
   return Q;
 }
 
-/// World axes of an index: the last entry of the workspace's lists.
-template <class List>
-auto& of(List& list, int body) {
-  return body == kWorld ? list.back() : list[static_cast<std::size_t>(body)];
-}
-
 }  // namespace
 
 template <int D>

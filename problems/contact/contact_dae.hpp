@@ -26,6 +26,12 @@ inline constexpr double kSpeedTolerance = 1e-10;   // m/s: a gap that closes no 
 inline constexpr double kAccelerationTolerance = 1e-9;  // m/s^2
 inline constexpr double kSoftness = 1e-9;          // of redundant contacts, relative to the bodies' inverse masses
 
+/// A body's entry in a list that has the world's at its end.
+template <class List>
+auto& of(List& list, int body) {
+  return body == kWorld ? list.back() : list[static_cast<std::size_t>(body)];
+}
+
 template <int D>
 class ContactDae final : public Dae {
  public:

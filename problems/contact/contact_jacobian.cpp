@@ -29,11 +29,6 @@ struct LocalState {
   }
 };
 
-template <class List>
-auto& of(List& list, int body) {
-  return body == kWorld ? list.back() : list[static_cast<std::size_t>(body)];
-}
-
 }  // namespace
 
 template <int D>

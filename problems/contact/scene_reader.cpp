@@ -349,6 +349,9 @@ void SceneReader<D>::check_start() const {
     if (c.is_joint() && std::abs(g.h) > kOpenJoint) {
       throw InputError(places_[i], fmt::format("joint '{}' is open by {:.3g} at the start and cannot close", c.name, g.h), "bodies where the joint holds them");
     }
+    if (c.is_joint() && std::abs(g.hdot) > kOpenJoint) {
+      throw InputError(places_[i], fmt::format("joint '{}' opens at {:.3g} per second at the start", c.name, g.hdot), "bodies that move as the joint lets them");
+    }
     if (!c.is_joint() && g.h < -kTouching) {
       throw InputError(places_[i], fmt::format("contact '{}' overlaps at the start by {:.3g} m", c.name, -g.h), "bodies apart or touching");
     }
