@@ -4,14 +4,27 @@
 
 namespace tenon {
 
+namespace {
+
+template <int D>
+std::unique_ptr<Dae> make_dae(contact::Scene<D> scene) {
+  return std::make_unique<contact::ContactDae<D>>(std::move(scene));
+}
+
+}  // namespace
+
 Simulation open_simulation(const std::string& name_or_path, const std::vector<std::string>& overrides) {
   contact::SceneFile file = contact::load_scene(name_or_path, overrides);
   Simulation out;
   out.settings = file.simulation;
-  if (auto* planar = std::get_if<contact::Scene<2>>(&file.scene))
-    out.dae = std::make_unique<contact::ContactDae<2>>(std::move(*planar));
-  else
-    out.dae = std::make_unique<contact::ContactDae<3>>(std::move(std::get<contact::Scene<3>>(file.scene)));
+  std::visit(
+      [&](auto& scene) {
+        for (const auto& c : scene.constraints) {
+          if (!c.is_joint() && c.is_two_scale && c.restitution > 0) out.collisions[c.name] = contact::law_of(c.restitution, c.contact_time);
+        }
+        out.dae = make_dae(std::move(scene));
+      },
+      file.scene);
   return out;
 }
 

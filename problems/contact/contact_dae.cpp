@@ -13,8 +13,8 @@ namespace tenon::contact {
 
 namespace {
 
-constexpr double kRank = 1e-11;       // of H M^-1 H': smaller pivots count as dependent contacts
-constexpr int kHeldRedundant = 0;     // places in DaeMode::held
+constexpr double kRank = 1e-11;    // of H M^-1 H': smaller pivots count as dependent contacts
+constexpr int kHeldRedundant = 0;  // places in DaeMode::held
 constexpr int kHeldEnergy = 1;
 
 const std::vector<std::string>& position_names(int dimension) {
@@ -41,8 +41,12 @@ ContactDae<D>::ContactDae(Scene<D> scene) : scene_(std::move(scene)) {
       state_names_.push_back(velocity + number);
     }
     places_.push_back(place);
+    Velocities<double, D> inverse = Velocities<double, D>::Zero();
+    for (int l = 0; l < body.freedoms; ++l) inverse[l] = l < D ? 1 / body.mass : 1 / body.inertia[l - D];
+    inverse_masses_.push_back(inverse);
     num_states_ += place.nq + place.nv;
   }
+  inverse_masses_.push_back(Velocities<double, D>::Zero());
   is_ballistic_ = scene_.forces.empty() && std::none_of(places_.begin(), places_.end(), [](Place p) { return p.nv > 3; });
   works_ = num_states_;
   force_work_.assign(scene_.forces.size(), -1);
@@ -129,14 +133,6 @@ void ContactDae<D>::load(double t, ConstVectorRef x, Bodies& bodies) const {
 }
 
 template <int D>
-double ContactDae<D>::inverse_mass(int body, int l) const {
-  if (body == kWorld) return 0;
-  const Body<D>& b = scene_.bodies[static_cast<std::size_t>(body)];
-  if (l >= b.freedoms) return 0;
-  return l < D ? 1 / b.mass : 1 / b.inertia[l - D];
-}
-
-template <int D>
 double ContactDae<D>::softness(const DaeMode& mode, const Constraint<D>& c) const {
   return mode.held[kHeldRedundant] == 0 ? 0 : kSoftness * (inverse_mass(c.a, 0) + inverse_mass(c.b, 0));
 }
@@ -162,7 +158,8 @@ void ContactDae<D>::apply_forces(double t, Bodies& bodies, double* powers) const
   for (std::size_t i = 0; i < scene_.bodies.size(); ++i) bodies.force[i] = own_force(scene_.bodies[i], scene_.gravity, bodies.v[i]);
   for (std::size_t k = 0; k < scene_.forces.size(); ++k) {
     const Force<D>& force = scene_.forces[k];
-    const auto value = evaluate<double, D>(force, t, of(bodies.q, force.a), of(bodies.v, force.a), of(bodies.q, force.b), of(bodies.v, force.b));
+    const auto value =
+        evaluate<double, D>(force, t, of(bodies.q, force.a), of(bodies.v, force.a), of(bodies.q, force.b), of(bodies.v, force.b));
     of(bodies.force, force.a) += value.Q_A;
     of(bodies.force, force.b) += value.Q_B;
     if (powers != nullptr && force_work_[k] >= 0) powers[force_work_[k]] = value.power;
@@ -187,7 +184,7 @@ GapValue<double, D> ContactDae<D>::gap(int constraint, double t, ConstVectorRef 
 template <int D>
 void ContactDae<D>::solve_multipliers(const DaeMode& mode, double t, Bodies& bodies) const {
   for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
-    for (int l = 0; l < places_[i].nv; ++l) bodies.acceleration[i][l] = inverse_mass(static_cast<int>(i), l) * bodies.force[i][l];
+    bodies.acceleration[i] = inverse_masses_[i].cwiseProduct(bodies.force[i]);
   }
   bodies.active.clear();
   bodies.lambda.setZero();
@@ -210,8 +207,9 @@ void ContactDae<D>::solve_multipliers(const DaeMode& mode, double t, Bodies& bod
   std::fill(bodies.first_seen.begin(), bodies.first_seen.end(), k);
   // a' M^-1 b of two generalised forces on one body
   const auto product = [&](int body, const Velocities<double, D>& a, const Velocities<double, D>& b) {
+    const Velocities<double, D>& inverse = of(inverse_masses_, body);
     double sum = 0;
-    for (int l = 0; l < place(body).nv; ++l) sum += a[l] * inverse_mass(body, l) * b[l];
+    for (int l = 0; l < kVelocities<D>; ++l) sum += a[l] * inverse[l] * b[l];
     return sum;
   };
   for (int row = 0; row < k; ++row) {
@@ -243,8 +241,7 @@ void ContactDae<D>::solve_multipliers(const DaeMode& mode, double t, Bodies& bod
     }
     const double law = g.bias + c.law.alpha1 * g.hdot + c.law.alpha0 * g.h + c.law.alpha3 * g.h * g.h * g.h;
     bodies.rhs[row] = -law;
-    for (int l = 0; l < place(c.a).nv; ++l) bodies.rhs[row] -= g.H_A[l] * of(bodies.acceleration, c.a)[l];
-    for (int l = 0; l < place(c.b).nv; ++l) bodies.rhs[row] -= g.H_B[l] * of(bodies.acceleration, c.b)[l];
+    bodies.rhs[row] -= g.H_A.dot(of(bodies.acceleration, c.a)) + g.H_B.dot(of(bodies.acceleration, c.b));
   }
   if (has_friction_) {
     bodies.lu.compute(bodies.dense);
@@ -263,13 +260,14 @@ void ContactDae<D>::set_accelerations(Bodies& bodies) const {
   for (const int i : bodies.active) {
     const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
     const double lambda = bodies.lambda[i];
-    for (int l = 0; l < place(c.a).nv; ++l) of(bodies.acceleration, c.a)[l] += inverse_mass(c.a, l) * bodies.push_a[static_cast<std::size_t>(i)][l] * lambda;
-    for (int l = 0; l < place(c.b).nv; ++l) of(bodies.acceleration, c.b)[l] += inverse_mass(c.b, l) * bodies.push_b[static_cast<std::size_t>(i)][l] * lambda;
+    of(bodies.acceleration, c.a) += lambda * of(inverse_masses_, c.a).cwiseProduct(bodies.push_a[static_cast<std::size_t>(i)]);
+    of(bodies.acceleration, c.b) += lambda * of(inverse_masses_, c.b).cwiseProduct(bodies.push_b[static_cast<std::size_t>(i)]);
   }
 }
 
 template <int D>
-void ContactDae<D>::derivatives(const DaeMode& mode, double t, ConstVectorRef x, ConstVectorRef, Workspace& workspace, VectorRef xdot, VectorRef y) const {
+void ContactDae<D>::derivatives(const DaeMode& mode, double t, ConstVectorRef x, ConstVectorRef, Workspace& workspace, VectorRef xdot,
+                                VectorRef y) const {
   auto& bodies = static_cast<Bodies&>(*workspace);
   load(t, x, bodies);
   if (scene_.with_audit) xdot.tail(num_states_ - works_).setZero();
@@ -368,11 +366,12 @@ void ContactDae<D>::exact_flow(const DaeMode&, double dt, ConstVectorRef x, Vect
 
 template <int D>
 bool ContactDae<D>::guards_read_derivatives(const DaeMode& mode) const {
-  return has_one_law_ || std::any_of(contacts_.begin(), contacts_.end(), [&](int i) { return mode.discrete[static_cast<std::size_t>(i)] != kFree; });
+  return has_one_law_ ||
+         std::any_of(contacts_.begin(), contacts_.end(), [&](int i) { return mode.discrete[static_cast<std::size_t>(i)] != kFree; });
 }
 
-/// As long as it takes to cross a shape's size at this speed and under gravity, so that nobody passes through a shape between two samples of a
-/// step; and half a radian of a turning body. A face without end has nothing behind it.
+/// As long as it takes to cross a shape's size at this speed and under gravity, so that nobody passes through a shape between two samples
+/// of a step; and half a radian of a turning body. A face without end has nothing behind it.
 template <int D>
 double ContactDae<D>::max_step(const DaeState& state, Workspace& workspace) const {
   auto& bodies = static_cast<Bodies&>(*workspace);
@@ -383,7 +382,8 @@ double ContactDae<D>::max_step(const DaeState& state, Workspace& workspace) cons
     const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
     if (state.mode.discrete[static_cast<std::size_t>(i)] != kFree) continue;
     if (c.shape.is_face()) {
-      if (c.gap.a.squaredNorm() > 0 && place(c.a).nv > D) longest = std::min(longest, 0.5 / of(bodies.v, c.a).tail(kVelocities<D> - D).norm());
+      if (c.gap.a.squaredNorm() > 0 && place(c.a).nv > D)
+        longest = std::min(longest, 0.5 / of(bodies.v, c.a).tail(kVelocities<D> - D).norm());
       continue;
     }
     const GapValue<double, D> g = gap_of(i, state.t, bodies);
@@ -403,7 +403,8 @@ double ContactDae<D>::energy_of(double t, const Bodies& bodies) const {
   }
   for (const Force<D>& force : scene_.forces) {
     if (force.kind != ForceKind::spring && force.kind != ForceKind::torsion) continue;
-    sum += evaluate<double, D>(force, t, of(bodies.q, force.a), of(bodies.v, force.a), of(bodies.q, force.b), of(bodies.v, force.b)).potential;
+    sum +=
+        evaluate<double, D>(force, t, of(bodies.q, force.a), of(bodies.v, force.a), of(bodies.q, force.b), of(bodies.v, force.b)).potential;
   }
   return sum;
 }

@@ -1,5 +1,5 @@
-// The state machine of the contacts, and what becomes of the velocities at an event. All tests are on levels, so that a start exactly touching, or a
-// restart, is treated as an event would be.
+// The state machine of the contacts, and what becomes of the velocities at an event. All tests are on levels, so that a start exactly
+// touching, or a restart, is treated as an event would be.
 //
 //     free -> collision     h <= 0 and closing; two-scale: the fast phase happens here and now, q stands still
 //     collision -> contact  two-scale: the rebound is slower than rest_speed; one-law: |h'| and |h''| are small and lambda > 0
@@ -19,7 +19,9 @@ constexpr double kClosed = 1e-11;  // m: gaps up to here collide
 constexpr int kHeldRedundant = 0;
 
 /// Unit vectors across the normal.
-std::array<Point<double, 2>, 1> tangents_of(const Point<double, 2>& n) { return {Point<double, 2>(-n[1], n[0])}; }
+std::array<Point<double, 2>, 1> tangents_of(const Point<double, 2>& n) {
+  return {Point<double, 2>(-n[1], n[0])};
+}
 std::array<Point<double, 3>, 2> tangents_of(const Point<double, 3>& n) {
   const Point<double, 3> first = n.unitOrthogonal(), second = n.cross(first);
   return {first, second};
@@ -159,7 +161,8 @@ Transition ContactDae<D>::collide(DaeState& state, Bodies& bodies, const EventLo
     const Point<double, D> arm_a = g.at_a - contact.radius_a * g.normal, arm_b = g.at_b - contact.radius_a * g.normal;
     for (const Point<double, D>& direction : tangents_of(g.normal)) {
       const Point<double, D> opposite = -direction;
-      const Velocities<double, D> on_a = of(bodies.poses, contact.a).force(arm_a, direction), on_b = of(bodies.poses, contact.b).force(arm_b, opposite);
+      const Velocities<double, D> on_a = of(bodies.poses, contact.a).force(arm_a, direction),
+                                  on_b = of(bodies.poses, contact.b).force(arm_b, opposite);
       rows.push_back({i, on_a, on_b, on_a.dot(of(bodies.v, contact.a)) + on_b.dot(of(bodies.v, contact.b))});
     }
   }
@@ -169,7 +172,7 @@ Transition ContactDae<D>::collide(DaeState& state, Bodies& bodies, const EventLo
   }
   const auto product = [&](const Row& r, const Row& s) {  // H_r M^-1 H_s'
     const Constraint<D>&first = scene_.constraints[static_cast<std::size_t>(r.constraint)],
-        &second = scene_.constraints[static_cast<std::size_t>(s.constraint)];
+          &second = scene_.constraints[static_cast<std::size_t>(s.constraint)];
     double sum = 0;
     for (const auto& [body, H] : {std::pair(first.a, &r.H_A), std::pair(first.b, &r.H_B)}) {
       for (const auto& [other, K] : {std::pair(second.a, &s.H_A), std::pair(second.b, &s.H_B)}) {
@@ -198,7 +201,8 @@ Transition ContactDae<D>::collide(DaeState& state, Bodies& bodies, const EventLo
   std::vector<Touching> contacts;
   for (const int i : touching) {
     const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
-    contacts.push_back({c.restitution, c.contact_time, c.rest_speed, c.friction, state.mode.discrete[static_cast<std::size_t>(i)] == kContact});
+    contacts.push_back(
+        {c.restitution, c.contact_time, c.rest_speed, c.friction, state.mode.discrete[static_cast<std::size_t>(i)] == kContact});
   }
   const FastPhase phase = resolve(scene_.impact_law, A, rates, contacts, tangents);
   if (!phase.failure.empty()) {
@@ -212,8 +216,8 @@ Transition ContactDae<D>::collide(DaeState& state, Bodies& bodies, const EventLo
   for (const MicroEvent& event : phase.events) {
     const int i = touching[static_cast<std::size_t>(event.contact)];
     const double gap = gaps[static_cast<std::size_t>(event.contact)];
-    log({state.t, scene_.constraints[static_cast<std::size_t>(i)].name, kFree, kCollision, gap, event.rate_before, event.rate_after, event.impulse, energy,
-         energy + event.work});
+    log({state.t, scene_.constraints[static_cast<std::size_t>(i)].name, kFree, kCollision, gap, event.rate_before, event.rate_after,
+         event.impulse, energy, energy + event.work});
     energy += event.work;
   }
   const auto push = [&](const Row& row, double impulse) {
@@ -287,7 +291,8 @@ Transition ContactDae<D>::distribute(DaeState& state, Bodies& bodies, const Even
       const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
       const bool is_active = trial.discrete[static_cast<std::size_t>(i)] == kContact;
       const double lightness = inverse_mass(c.a, 0) + inverse_mass(c.b, 0);
-      const double bad = is_active ? 0.5 * kAccelerationTolerance - bodies.lambda[i] * lightness : -acceleration(i, bodies) - kAccelerationTolerance;
+      const double bad =
+          is_active ? 0.5 * kAccelerationTolerance - bodies.lambda[i] * lightness : -acceleration(i, bodies) - kAccelerationTolerance;
       if (bad <= 0 || (worst >= 0 && (takes_first || bad <= violation))) continue;
       worst = i, violation = bad;
     }

@@ -7,8 +7,8 @@ namespace tenon::contact {
 
 namespace {
 
-constexpr double kStandsStill = 1e-10;  // m/s: slower closing is none
-constexpr double kRank = 1e-12;         // relative: a held contact that depends on others carries nothing of its own
+constexpr double kStandsStill = 1e-10;     // m/s: slower closing is none
+constexpr double kRank = 1e-12;            // relative: a held contact that depends on others carries nothing of its own
 constexpr double kStepsOfAContact = 4000;  // of the compliant laws, over one contact time
 constexpr double kMostContactTimes = 400;
 
@@ -66,7 +66,9 @@ class Resolution {
     }
     const auto forces = [&](const Vector& d, const Vector& w, Vector& lambda) {
       for (int i = 0; i < k; ++i) {
-        const double f = d[i] > 0 ? stiffness[i] * std::pow(d[i], power) - damping[i] * w[i] * (power == 1 ? 1 : std::pow(d[i] / (speed * shortest / 4), power - 1)) : 0;
+        const double f = d[i] > 0 ? stiffness[i] * std::pow(d[i], power) -
+                                        damping[i] * w[i] * (power == 1 ? 1 : std::pow(d[i] / (speed * shortest / 4), power - 1))
+                                  : 0;
         lambda[i] = std::max(f, 0.0);
       }
     };
@@ -138,7 +140,8 @@ class Resolution {
         continue;
       }
       const auto slips = std::find_if(chosen.begin(), chosen.end(), [&](int i) {
-        return tangent[at(i)] == Tangent::sticks && p.segment(k_ + i * tangents_, tangents_).norm() > touching_[at(i)].friction * p[i] * (1 + 1e-9);
+        return tangent[at(i)] == Tangent::sticks &&
+               p.segment(k_ + i * tangents_, tangents_).norm() > touching_[at(i)].friction * p[i] * (1 + 1e-9);
       });
       if (slips == chosen.end()) return apply(n, p, e);
       tangent[at(*slips)] = Tangent::slides;
@@ -148,8 +151,8 @@ class Resolution {
   /// The impulses that reverse contact n by e, keep the held ones still and the sticking tangents at rest.  (16)
   Vector impulse(int n, double e, const std::vector<int>& chosen, const std::vector<Tangent>& tangent) const {
     const int size = static_cast<int>(A_.rows());
-    std::vector<int> rows;     // what must come to a given speed
-    std::vector<Vector> along; // one unit of each unknown, over all rows
+    std::vector<int> rows;      // what must come to a given speed
+    std::vector<Vector> along;  // one unit of each unknown, over all rows
     Vector target(size * 2);
     for (const int i : chosen) {
       Vector unit = Vector::Unit(size, i);
@@ -202,8 +205,8 @@ class Resolution {
     }
   }
 
-  /// One blow without rebound over all contacts: the active set grows by the contact that closes fastest and loses those that would pull.  (17)
-  /// Source: C. L. Lawson, R. J. Hanson, Solving Least Squares Problems (1974), ch. 23.
+  /// One blow without rebound over all contacts: the active set grows by the contact that closes fastest and loses those that would pull.
+  /// (17) Source: C. L. Lawson, R. J. Hanson, Solving Least Squares Problems (1974), ch. 23.
   void settle(int fastest) {
     const Matrix A = A_.topLeftCorner(k_, k_);
     Vector p = Vector::Zero(k_);
@@ -212,7 +215,8 @@ class Resolution {
       const Vector rates = out_.rates.head(k_) + A * p;
       int next = -1;
       for (int i = 0; i < k_; ++i) {
-        if (std::count(active.begin(), active.end(), i) == 0 && rates[i] < -0.1 * kStandsStill && (next < 0 || rates[i] < rates[next])) next = i;
+        if (std::count(active.begin(), active.end(), i) == 0 && rates[i] < -0.1 * kStandsStill && (next < 0 || rates[i] < rates[next]))
+          next = i;
       }
       if (next < 0) break;
       active.push_back(next);

@@ -42,6 +42,8 @@ class ExactFlow final : public Flow {
 
 }  // namespace
 
-std::unique_ptr<Flow> make_exact_flow(const Dae& dae) { return std::make_unique<ExactFlow>(dae); }
+std::unique_ptr<Flow> make_exact_flow(const Dae& dae) {
+  return std::make_unique<ExactFlow>(dae);
+}
 
 }  // namespace tenon

@@ -21,7 +21,14 @@ bool is_same_time(double a, double b) {
 }  // namespace
 
 HybridIntegrator::HybridIntegrator(const Dae& dae, const IntegratorOptions& options, std::unique_ptr<Flow> flow)
-    : dae_(dae), options_(options), flow_(std::move(flow)), exact_(make_exact_flow(dae)), current_(flow_.get()), newton_(dae), workspace_(dae.make_workspace()), sample_(initial_state_of(dae)) {
+    : dae_(dae),
+      options_(options),
+      flow_(std::move(flow)),
+      exact_(make_exact_flow(dae)),
+      current_(flow_.get()),
+      newton_(dae),
+      workspace_(dae.make_workspace()),
+      sample_(initial_state_of(dae)) {
   validate(options);
   before_.resize(dae.num_guards());
   after_.resize(dae.num_guards());
@@ -126,7 +133,9 @@ void HybridIntegrator::evaluate_guards(const DaeState& state, Vector& values) {
 }
 
 /// What the guards need of the state at t.
-bool HybridIntegrator::look(double t) { return reads_derivatives_ ? current_->interpolate(t, sample_) : current_->interpolate_state(t, sample_); }
+bool HybridIntegrator::look(double t) {
+  return reads_derivatives_ ? current_->interpolate(t, sample_) : current_->interpolate_state(t, sample_);
+}
 
 double HybridIntegrator::guard_at(double t, int guard) {
   look(t);
@@ -201,6 +210,12 @@ bool HybridIntegrator::land(Crossing& crossing, DaeState& state) {
     const double correction = -values_[guard] / slope;
     if (!(std::abs(correction) > options_.event_tolerance) || !(std::abs(correction) < delta)) break;
     crossing.t = std::clamp(crossing.t + correction, current_->begin(), current_->end());
+  }
+  // a guard that jumps has no zero to land on: the next mode starts where it has fallen, or this event would come back for ever
+  for (double ahead = options_.event_tolerance; values_[guard] > 0 && crossing.t < current_->end(); ahead *= 2) {
+    crossing.t = std::min(crossing.t + ahead, current_->end());
+    if (!current_->land(crossing.t, state)) return fail(IntegrationStatus::no_consistent_state, state, "no consistent multipliers");
+    evaluate_guards(state, values_);
   }
   return true;
 }
