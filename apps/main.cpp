@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
+#include <system_error>
 
 #include "tenon/apps/ampl.hpp"
 #include "tenon/apps/command_line.hpp"
@@ -44,6 +45,8 @@ int main(int argc, char** argv) {
     return explain(error, tenon::kBadInput);
   } catch (const tenon::OutputError& error) {
     return explain(error, tenon::kNoOutput);
+  } catch (const std::system_error& error) {  // fmt, where its output does not fit the buffer of standard output
+    return explain(tenon::OutputError("standard output: cannot be written: " + error.code().message()), tenon::kNoOutput);
   } catch (const std::exception& error) {
     return explain(error, tenon::kNotSolved);
   }

@@ -3,6 +3,7 @@
 namespace tenon {
 
 void add_allocation(std::vector<Benchmark>& rows);
+void add_contact(std::vector<Benchmark>& rows);
 void add_linear_allocation(std::vector<Benchmark>& rows);
 void add_linear_quadratic(std::vector<Benchmark>& rows);
 void add_swing_up(std::vector<Benchmark>& rows);
@@ -13,6 +14,7 @@ std::vector<Benchmark> benchmarks() {
   add_linear_allocation(rows);
   add_swing_up(rows);
   add_linear_quadratic(rows);
+  add_contact(rows);
   return rows;
 }
 
