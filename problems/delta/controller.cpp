@@ -1,0 +1,92 @@
+#include "tenon/problems/delta/controller.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace tenon::delta {
+
+namespace {
+
+void require(bool holds, const std::string& name, double value, const std::string& expected) {
+  if (!holds) throw std::invalid_argument(name + " is " + std::to_string(value) + " (expected " + expected + ")");
+}
+
+const ControllerOptions& validated(const ControllerOptions& options) {
+  validate(options);
+  return options;
+}
+
+}  // namespace
+
+void validate(const ControllerOptions& options) {
+  require(options.period > 0, "period", options.period, "more than 0 s");
+  require(options.integral_limit >= 0, "integral_limit", options.integral_limit, "0 or more");
+  require(options.filter_frequency >= 0 && options.filter_frequency * options.period < 0.5, "filter_frequency", options.filter_frequency,
+          "0, or less than half of 1/period");
+  require(options.tactile_limit >= 0, "tactile_limit", options.tactile_limit, "0 or more");
+  require(std::abs(options.tactile_axis.norm() - 1) < 1e-9, "the length of tactile_axis", options.tactile_axis.norm(), "1");
+  require(std::isfinite(options.tactile_gain), "tactile_gain", options.tactile_gain, "a finite number");
+}
+
+Controller::Controller(const Robot& robot, const ControllerOptions& options)
+    : law_(robot, validated(options).law), options_(options), filter_(options.filter_frequency, options.period) {}
+
+void Controller::reset() {
+  filter_.reset();
+  integral_.setZero();
+  holding_.setZero();
+  shift_ = 0;
+  has_previous_ = false;
+  command_ = {};
+}
+
+Reference Controller::reference() const {
+  Reference moved = reference_;
+  moved.position += shift_ * options_.tactile_axis;
+  return moved;
+}
+
+const Command& Controller::tick(const Measurement& measurement) {
+  const Sensed sensed(law_.robot(), measurement.angle, rate(measurement));
+  command_.singular = !sensed.ok;
+  if (!sensed.ok) {
+    limit(holding_);
+    return command_;
+  }
+  const Reference wanted = reference();
+  command_.wrist = sensed.wrist;
+  command_.error = wanted.position - sensed.wrist;
+  const LawTorque torque = law_.torque(sensed, wanted, integral_);
+  holding_ = torque.gravity;
+  limit(torque.torque);
+  integrate(measurement);
+  return command_;
+}
+
+Vector3 Controller::rate(const Measurement& measurement) {
+  if (options_.filter_frequency == 0) return measurement.rate;
+  const Vector3 difference = has_previous_ ? Vector3((measurement.angle - previous_angle_) / options_.period) : Vector3::Zero();
+  previous_angle_ = measurement.angle;
+  has_previous_ = true;
+  return filter_(difference);
+}
+
+void Controller::limit(const Vector3& torque) {
+  const double most = law_.robot().torque_limit;
+  command_.torque = torque.cwiseMax(-most).cwiseMin(most);
+  command_.saturated = (torque.array().abs() > most).any();
+}
+
+void Controller::integrate(const Measurement& measurement) {
+  const double ki = law_.options().gains.integral;
+  if (ki > 0 && !command_.saturated) {
+    const double most = options_.integral_limit / ki;
+    integral_ = (integral_ + options_.period * command_.error).cwiseMax(-most).cwiseMin(most);
+  }
+  const double shift = shift_ + options_.period * options_.tactile_gain * (measurement.tactile_left - measurement.tactile_right);
+  shift_ = std::clamp(shift, -options_.tactile_limit, options_.tactile_limit);
+}
+
+}  // namespace tenon::delta
