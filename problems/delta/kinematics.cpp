@@ -181,7 +181,7 @@ Forward forward_kinematics(const Robot& robot, const Vector3& y) {
 
 Forward forward_newton(const Robot& robot, const Vector3& y, Vector9& guess) {
   constexpr int kMostSteps = 20;
-  constexpr double kRounding = 4e-15;  // of a length in parts of l1 + l2
+  constexpr double kRounding = 1e-14;  // of a length in parts of l1 + l2
   Forward out;
   for (int i = 0; i < kArms; ++i) guess[3 * i] = y[i];
   for (int step = 0;; ++step) {
