@@ -12,15 +12,15 @@ namespace tenon {
 
 struct Arguments {
   std::vector<std::string> names;  // the words that are no flags: problems, a vehicle, a file
-  std::string wrenches, output, trace;
-  std::optional<std::string> solver, solvers, initial;
+  std::string wrenches, output, trace, workspace;
+  std::optional<std::string> solver, solvers, initial, inverse, forward;
   std::vector<std::string> set;
   std::optional<double> tolerance, time_limit;
   std::optional<int> max_iterations;
   std::uint64_t seed = 1;
   int rows = 0;
   int degree = 2;
-  bool constant = false, cold = false, json = false, quiet = false, verbose = false;
+  bool constant = false, cold = false, jacobians = false, json = false, quiet = false, verbose = false;
 
   /// The solver options that were given; the others as they are by default.
   Options options() const {

@@ -12,6 +12,7 @@
 #include "tenon/core/nearest_name.hpp"
 #include "tenon/problems/allocation/vehicle_file.hpp"
 #include "tenon/problems/catalogue.hpp"
+#include "tenon/problems/delta/robot_file.hpp"
 #include "tenon/solvers/make_solver.hpp"
 
 namespace tenon {
@@ -40,6 +41,12 @@ std::vector<Named> vehicles() {
   return list;
 }
 
+std::vector<Named> robots() {
+  std::vector<Named> list;
+  for (const std::string& name : delta::builtin_robots()) list.push_back({name, delta::describe_builtin_robot(name)});
+  return list;
+}
+
 std::vector<Named> solvers() {
   std::vector<Named> list;
   for (const SolverDescription& s : list_solvers()) list.push_back({s.name, s.description, s.available});
@@ -52,7 +59,7 @@ std::vector<Named> none() {
 
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> table{{"problems", &problems}, {"vehicles", &vehicles}, {"missions", &none},
-                                       {"scenes", &none},       {"robots", &none},       {"solvers", &solvers}};
+                                       {"scenes", &none},       {"robots", &robots},       {"solvers", &solvers}};
   return table;
 }
 
