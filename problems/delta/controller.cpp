@@ -33,18 +33,30 @@ void validate(const ControllerOptions& options) {
 Controller::Controller(const Robot& robot, const ControllerOptions& options)
     : law_(robot, validated(options).law), options_(options), filter_(options.filter_frequency, options.period) {}
 
-void Controller::reset() {
-  filter_.reset();
-  integral_.setZero();
-  holding_.setZero();
-  shift_ = 0;
-  has_previous_ = false;
-  command_ = {};
+void ControllerState::write(Eigen::Ref<Vector> numbers) const {
+  numbers.segment<3>(0) = integral;
+  numbers.segment<3>(3) = previous_angle;
+  numbers.segment<3>(6) = holding;
+  numbers.segment<3>(9) = filter.s1;
+  numbers.segment<3>(12) = filter.s2;
+  numbers[15] = shift;
+  numbers[16] = has_previous;
+}
+
+ControllerState ControllerState::read(const Eigen::Ref<const Vector>& numbers) {
+  ControllerState state;
+  state.integral = numbers.segment<3>(0);
+  state.previous_angle = numbers.segment<3>(3);
+  state.holding = numbers.segment<3>(6);
+  state.filter = {numbers.segment<3>(9), numbers.segment<3>(12)};
+  state.shift = numbers[15];
+  state.has_previous = numbers[16] != 0;
+  return state;
 }
 
 Reference Controller::reference() const {
   Reference moved = reference_;
-  moved.position += shift_ * options_.tactile_axis;
+  moved.position += state_.shift * options_.tactile_axis;
   return moved;
 }
 
@@ -52,14 +64,14 @@ const Command& Controller::tick(const Measurement& measurement) {
   const Sensed sensed(law_.robot(), measurement.angle, rate(measurement));
   command_.singular = !sensed.ok;
   if (!sensed.ok) {
-    limit(holding_);
+    limit(state_.holding);
     return command_;
   }
   const Reference wanted = reference();
   command_.wrist = sensed.wrist;
   command_.error = wanted.position - sensed.wrist;
-  const LawTorque torque = law_.torque(sensed, wanted, integral_);
-  holding_ = torque.gravity;
+  const LawTorque torque = law_.torque(sensed, wanted, state_.integral);
+  state_.holding = torque.gravity;
   limit(torque.torque);
   integrate(measurement);
   return command_;
@@ -67,10 +79,10 @@ const Command& Controller::tick(const Measurement& measurement) {
 
 Vector3 Controller::rate(const Measurement& measurement) {
   if (options_.filter_frequency == 0) return measurement.rate;
-  const Vector3 difference = has_previous_ ? Vector3((measurement.angle - previous_angle_) / options_.period) : Vector3::Zero();
-  previous_angle_ = measurement.angle;
-  has_previous_ = true;
-  return filter_(difference);
+  const Vector3 difference = state_.has_previous ? Vector3((measurement.angle - state_.previous_angle) / options_.period) : Vector3::Zero();
+  state_.previous_angle = measurement.angle;
+  state_.has_previous = true;
+  return filter_(difference, state_.filter);
 }
 
 void Controller::limit(const Vector3& torque) {
@@ -83,10 +95,10 @@ void Controller::integrate(const Measurement& measurement) {
   const double ki = law_.options().gains.integral;
   if (ki > 0 && !command_.saturated) {
     const double most = options_.integral_limit / ki;
-    integral_ = (integral_ + options_.period * command_.error).cwiseMax(-most).cwiseMin(most);
+    state_.integral = (state_.integral + options_.period * command_.error).cwiseMax(-most).cwiseMin(most);
   }
-  const double shift = shift_ + options_.period * options_.tactile_gain * (measurement.tactile_left - measurement.tactile_right);
-  shift_ = std::clamp(shift, -options_.tactile_limit, options_.tactile_limit);
+  const double shift = state_.shift + options_.period * options_.tactile_gain * (measurement.tactile_left - measurement.tactile_right);
+  state_.shift = std::clamp(shift, -options_.tactile_limit, options_.tactile_limit);
 }
 
 }  // namespace tenon::delta

@@ -1,10 +1,11 @@
-// The delta robot's controller: a law at a fixed period, with what a machine needs around it. All state is in the object.
+// The delta robot's controller: a law at a fixed period, with what a machine needs around it.
 //
 //     e = r - z;   int e grows only where |ki int e| stays within its limit and no motor is at its own               (anti-windup)
 //     r = r_0 + axis shift,   shift' = k_f (s_L - s_R)                                                               (tactile loop)
 //     y' from the filtered difference of the angles, where the machine does not measure it                           (delta.md, section 8)
 //
-// The same object runs in the simulator and on a robot. tick() neither allocates nor throws.
+// All that it remembers is one value, which a simulation may copy, keep and put back: the same object runs there and on a robot. tick()
+// neither allocates nor throws.
 #pragma once
 
 #include "tenon/problems/delta/law.hpp"
@@ -39,13 +40,28 @@ struct Command {
   Vector3 error{0, 0, 0};        // r - z
 };
 
+/// What a controller remembers from tick to tick.
+struct ControllerState {
+  Vector3 integral{0, 0, 0};        // int(r - z), m s
+  Vector3 previous_angle{0, 0, 0};  // rad
+  Vector3 holding{0, 0, 0};         // the torque that last held the weight, N m
+  LowPass::State filter;
+  double shift = 0;                 // of the reference by the tactile loop, m
+  bool has_previous = false;
+
+  static constexpr int kSize = 17;
+  void write(Eigen::Ref<Vector> numbers) const;
+  static ControllerState read(const Eigen::Ref<const Vector>& numbers);
+};
+
 class Controller {
  public:
   /// Throws std::invalid_argument as validate() does.
   Controller(const Robot& robot, const ControllerOptions& options);
 
-  /// As before the first tick.
-  void reset();
+  /// As before the first tick, or as it was once.
+  void reset(const ControllerState& state = {}) { state_ = state; }
+  const ControllerState& state() const { return state_; }
   /// Holds until the next call.
   void set_reference(const Reference& reference) { reference_ = reference; }
 
@@ -53,8 +69,6 @@ class Controller {
 
   /// The reference as the tactile loop has moved it.
   Reference reference() const;
-  const Vector3& integral() const { return integral_; }  // int(r - z), m s
-  double tactile_shift() const { return shift_; }        // m
   const Law& law() const { return law_; }
 
  private:
@@ -66,9 +80,7 @@ class Controller {
   ControllerOptions options_;
   LowPass filter_;
   Reference reference_;
-  Vector3 integral_{0, 0, 0}, previous_angle_{0, 0, 0}, holding_{0, 0, 0};
-  double shift_ = 0;
-  bool has_previous_ = false;
+  ControllerState state_;
   Command command_;
 };
 

@@ -1,4 +1,4 @@
-// A second-order low-pass filter (Butterworth) for three signals at a fixed period.
+// A second-order low-pass filter (Butterworth) for three signals at a fixed period. What it remembers is its caller's.
 //
 //     G(s) = 1 / (1 + sqrt(2) s/w + (s/w)^2),  made discrete by s/w -> (1/k) (z - 1)/(z + 1),  k = tan(w T/2)
 #pragma once
@@ -23,20 +23,21 @@ class LowPass {
     passes_ = false;
   }
 
-  void reset() { s1_.setZero(), s2_.setZero(); }
+  struct State {
+    Eigen::Vector3d s1{0, 0, 0}, s2{0, 0, 0};
+  };
 
-  Eigen::Vector3d operator()(const Eigen::Vector3d& in) {
+  Eigen::Vector3d operator()(const Eigen::Vector3d& in, State& state) const {
     if (passes_) return in;
-    const Eigen::Vector3d out = b_ * in + s1_;
-    s1_ = 2 * b_ * in - a1_ * out + s2_;
-    s2_ = b_ * in - a2_ * out;
+    const Eigen::Vector3d out = b_ * in + state.s1;
+    state.s1 = 2 * b_ * in - a1_ * out + state.s2;
+    state.s2 = b_ * in - a2_ * out;
     return out;
   }
 
  private:
   double b_ = 1, a1_ = 0, a2_ = 0;
   bool passes_ = true;
-  Eigen::Vector3d s1_{0, 0, 0}, s2_{0, 0, 0};
 };
 
 }  // namespace tenon::delta

@@ -1,0 +1,223 @@
+#include "tenon/problems/delta/scene_dae.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace tenon::delta {
+
+namespace {
+
+constexpr double kToolPole = 20;  // 1/s, both poles of the gimbals' own loop
+
+Robot with_payload(Robot robot, double payload) {
+  robot.payload = payload;
+  return robot;
+}
+
+
+}  // namespace
+
+SceneDae::SceneDae(Scene scene)
+    : scene_(std::move(scene)),
+      constants_(scene_.robot),
+      controller_options_(scene_.controller),
+      believed_(with_payload(scene_.robot, scene_.controller_payload)),
+      law_(believed_, scene_.controller.law),
+      gimbals_{scene_.robot.gimbal_inertia} {
+  const Inverse inverse = inverse_kinematics(scene_.robot, scene_.position);
+  if (!inverse.ok()) {
+    throw std::invalid_argument("the wrist starts out of reach of arm " + std::to_string(inverse.unreachable_arm + 1) + ", " +
+                                std::to_string(distance_to_workspace(scene_.robot, scene_.position)) + " m from the workspace");
+  }
+  q_ = inverse.q;
+  const Configuration at(q_);
+  const Motion motion(scene_.robot, at);
+  v_ = scene_.velocity.isZero() ? Vector9(Vector9::Zero()) : motion.rates(motion.motors(scene_.velocity));
+  if (!v_.allFinite() || motion.singularity(scene_.robot, at).s2 < kSingular) {
+    throw std::invalid_argument("the wrist starts at a singularity");
+  }
+  const auto add_states = [this](bool present, int count) {
+    const int first = present ? num_states_ : -1;
+    if (present) num_states_ += count;
+    return first;
+  };
+  integral_ = add_states(is_continuous(), 3);
+  object_ = add_states(scene_.object.mass > 0, 2);
+  tool_ = add_states(scene_.has_tool, 6);
+}
+
+void SceneDae::initial_state(DaeState& state) const {
+  state.x.head<9>() = q_;
+  state.x.segment<9>(9) = v_;
+  if (object_ >= 0) state.x[object_] = scene_.object.position;
+  if (tool_ >= 0) state.x.segment<3>(tool_) = scene_.tool_angle;
+  state.mode.discrete.assign(static_cast<std::size_t>(num_contacts() + 1), 0);  // contacts, then the ticks so far
+  if (is_sampled()) state.mode.held = Vector::Zero(3 + ControllerState::kSize + 1 + 3 * scene_.delay);
+}
+
+SceneDae::Touch SceneDae::touch(int i, const DaeMode& mode, double t, ConstVectorRef x, const Vector3& wrist, const Vector3& velocity) const {
+  const Contact& c = contact(i);
+  Touch out;
+  out.gap = c.normal.dot(wrist) + c.offset;
+  out.rate = c.normal.dot(velocity);
+  if (c.is_finger) {
+    const Gripper& g = scene_.gripper;
+    out.gap += g.opening(t);
+    if (t > g.begin && t < g.end) out.rate += (g.to - g.from) / (g.end - g.begin);
+    if (object_ >= 0) {
+      const double along = c.normal.dot(controller_options_.tactile_axis);
+      out.gap -= along * x[object_];
+      out.rate -= along * x[object_ + 1];
+    }
+  }
+  const bool touches = mode.discrete[static_cast<std::size_t>(i)] != 0;
+  out.force = touches ? -c.stiffness * out.gap - c.damping * out.rate : 0;
+  return out;
+}
+
+Vector3 SceneDae::torque(const DaeMode& mode, double t, ConstVectorRef x, const Configuration& at) const {
+  if (is_sampled()) return mode.held.head<3>();
+  if (!is_continuous()) return Vector3::Zero();
+  const Sensed sensed(believed_, at, x.segment<9>(9));
+  const double most = scene_.robot.torque_limit;
+  return law_.torque(sensed, scene_.reference.at(t), x.segment<3>(integral_)).torque.cwiseMax(-most).cwiseMin(most);
+}
+
+Vector3 SceneDae::integral_rate(double t, ConstVectorRef x, const Vector3& wrist) const {
+  Vector3 rate = scene_.reference.at(t).position - wrist;
+  const double most = controller_options_.integral_limit / law_.options().gains.integral;
+  for (int k = 0; k < 3; ++k) {
+    if (std::abs(x[integral_ + k]) >= most && x[integral_ + k] * rate[k] > 0) rate[k] = 0;
+  }
+  return rate;
+}
+
+Vector3 SceneDae::tool_acceleration(ConstVectorRef x) const {
+  const Vector3 angle = x.segment<3>(tool_), rate = x.segment<3>(tool_ + 3);
+  const Vector3 w = kToolPole * kToolPole * (scene_.tool_reference - angle) - 2 * kToolPole * rate;
+  const double most = scene_.robot.gimbal_torque_limit;
+  return gimbals_.acceleration(angle, rate, gimbals_.linearising_torque(angle, rate, w).cwiseMax(-most).cwiseMin(most));
+}
+
+/// All but the contacts'.
+double SceneDae::object_force(double t, ConstVectorRef x) const {
+  const Object& object = scene_.object;
+  const double push = scene_.push.on_object ? scene_.push.at(t)[0] : 0;
+  return push - object.stiffness * (x[object_] - object.position) - object.damping * x[object_ + 1];
+}
+
+void SceneDae::residual(const DaeMode& mode, const DaePoint& at, Workspace&, VectorRef F) const {
+  const Robot& robot = scene_.robot;
+  const Vector9 q = at.x.head<9>(), v = at.x.segment<9>(9), v_rate = at.xdot.segment<9>(9);
+  const Configuration configuration(q);
+  const Matrix39 j_v = simulation_jacobian(robot, configuration);
+  const Matrix69 h = closure_jacobian(robot, configuration);
+  const Vector3 wrist = wrist_position(robot, configuration), velocity = j_v * v;
+  const Vector3 push = scene_.push.at(at.t);
+
+  Vector3 force = scene_.push.on_object ? Vector3(Vector3::Zero()) : push;
+  double on_object = 0;
+  for (int i = 0; i < num_contacts(); ++i) {
+    const double y = at.y[kContact + i];
+    force += y * contact(i).normal;
+    if (contact(i).is_finger) on_object -= y * contact(i).normal.dot(controller_options_.tactile_axis);
+    F[num_states_ + kContact + i] = y - touch(i, mode, at.t, at.x, wrist, velocity).force;
+  }
+
+  F.head<9>() = at.xdot.head<9>() - v;
+  Vector9 balance = -j_v.transpose() * force - h.transpose() * at.y.head<6>();
+  for (int i = 0; i < kArms; ++i) {
+    const Vector3 rate = v.segment<3>(3 * i);
+    balance.segment<3>(3 * i) += ArmInertia(constants_, configuration[i]) * Vector3(v_rate.segment<3>(3 * i)) +
+                                 coriolis(constants_, configuration[i], rate) + constants_.damping.cwiseProduct(rate) +
+                                 gravity(constants_, configuration[i]);
+    balance[3 * i] -= at.y[kTorque + i];
+  }
+  F.segment<9>(9) = balance;
+  if (integral_ >= 0) F.segment<3>(integral_) = at.xdot.segment<3>(integral_) - integral_rate(at.t, at.x, wrist);
+  if (object_ >= 0) {
+    F[object_] = at.xdot[object_] - at.x[object_ + 1];
+    F[object_ + 1] = scene_.object.mass * at.xdot[object_ + 1] - object_force(at.t, at.x) - on_object;
+  }
+  if (tool_ >= 0) {
+    F.segment<3>(tool_) = at.xdot.segment<3>(tool_) - at.x.segment<3>(tool_ + 3);
+    F.segment<3>(tool_ + 3) = at.xdot.segment<3>(tool_ + 3) - tool_acceleration(at.x);
+  }
+  const double p = robot.stabilisation;
+  F.segment<6>(num_states_) =
+      h * v_rate + closure_bias(robot, configuration, v) + 2 * p * (h * v) + p * p * closure(robot, configuration);
+  F.segment<3>(num_states_ + kTorque) = at.y.segment<3>(kTorque) - at.u - torque(mode, at.t, at.x, configuration);
+}
+
+void SceneDae::derivatives(const DaeMode& mode, double t, ConstVectorRef x, ConstVectorRef u, Workspace&, VectorRef xdot,
+                           VectorRef y) const {
+  const Robot& robot = scene_.robot;
+  const Vector9 q = x.head<9>(), v = x.segment<9>(9);
+  const Configuration configuration(q);
+  const Vector3 push = scene_.push.at(t);
+  Vector3 force = scene_.push.on_object ? Vector3(Vector3::Zero()) : push;
+  double on_object = 0;
+  const Vector3 wrist = wrist_position(robot, configuration);
+  if (num_contacts() > 0) {
+    const Vector3 velocity = simulation_jacobian(robot, configuration) * v;
+    for (int i = 0; i < num_contacts(); ++i) {
+      const double y_i = y[kContact + i] = touch(i, mode, t, x, wrist, velocity).force;
+      force += y_i * contact(i).normal;
+      if (contact(i).is_finger) on_object -= y_i * contact(i).normal.dot(controller_options_.tactile_axis);
+    }
+  }
+  const Vector3 motors = u + torque(mode, t, x, configuration);
+  const Acceleration acceleration = delta::acceleration(robot, constants_, configuration, v, motors, force);
+  xdot.head<9>() = v;
+  xdot.segment<9>(9) = acceleration.v_rate;
+  y.head<6>() = acceleration.lambda;
+  y.segment<3>(kTorque) = motors;
+  if (integral_ >= 0) xdot.segment<3>(integral_) = integral_rate(t, x, wrist);
+  if (object_ >= 0) {
+    xdot[object_] = x[object_ + 1];
+    xdot[object_ + 1] = (object_force(t, x) + on_object) / scene_.object.mass;
+  }
+  if (tool_ >= 0) {
+    xdot.segment<3>(tool_) = x.segment<3>(tool_ + 3);
+    xdot.segment<3>(tool_ + 3) = tool_acceleration(x);
+  }
+}
+
+void SceneDae::jacobian(const DaeMode& mode, const DaePoint& at, double alpha, Workspace& workspace, std::span<double> values) const {
+  const int n = num_states_ + num_algebraics();
+  Eigen::Map<Eigen::MatrixXd> J(values.data(), n, n);
+  constexpr double kStep = 6e-6;  // cube root of the rounding
+  Vector x = at.x, plus(n), minus(n);
+  for (int k = 0; k < num_states_; ++k) {
+    const double step = kStep * (1 + std::abs(x[k]));
+    x[k] = at.x[k] + step;
+    residual(mode, DaePoint(at.t, at.xdot, x, at.y, at.u), workspace, plus);
+    x[k] = at.x[k] - step;
+    residual(mode, DaePoint(at.t, at.xdot, x, at.y, at.u), workspace, minus);
+    x[k] = at.x[k];
+    J.col(k) = (plus - minus) / (2 * step);
+  }
+  J.diagonal().head(num_states_).array() += alpha;  // xdot, but for the rows with masses
+  const Configuration configuration(Vector9(at.x.head<9>()));
+  const Matrix69 h = closure_jacobian(scene_.robot, configuration);
+  const Matrix39 j_v = simulation_jacobian(scene_.robot, configuration);
+  J.block<9, 9>(9, 9) -= alpha * Eigen::Matrix<double, 9, 9>::Identity();
+  for (int i = 0; i < kArms; ++i) J.block<3, 3>(9 + 3 * i, 9 + 3 * i) += alpha * ArmInertia(constants_, configuration[i]).matrix();
+  J.block<6, 9>(num_states_, 9) += alpha * h;
+  if (object_ >= 0) J(object_ + 1, object_ + 1) += alpha * (scene_.object.mass - 1);
+
+  J.rightCols(num_algebraics()).setZero();
+  J.bottomRightCorner(num_algebraics(), num_algebraics()).bottomRightCorner(3 + num_contacts(), 3 + num_contacts()).setIdentity();
+  J.block<9, 6>(9, num_states_) = -h.transpose();
+  for (int i = 0; i < kArms; ++i) J(9 + 3 * i, num_states_ + kTorque + i) = -1;
+  for (int i = 0; i < num_contacts(); ++i) {
+    J.block<9, 1>(9, num_states_ + kContact + i) = -j_v.transpose() * contact(i).normal;
+    if (object_ >= 0 && contact(i).is_finger) {
+      J(object_ + 1, num_states_ + kContact + i) = contact(i).normal.dot(controller_options_.tactile_axis);
+    }
+  }
+}
+
+}  // namespace tenon::delta
