@@ -1,7 +1,5 @@
 #include "tenon/problems/delta/dynamics.hpp"
 
-#include <Eigen/Cholesky>
-
 namespace tenon::delta {
 
 double kinetic_energy(const ArmConstants& k, const Configuration& at, const Vector9& v) {
@@ -58,6 +56,33 @@ Matrix3 reduced_inertia(const ArmConstants& k, const Configuration& at, const Mo
   return inertia;
 }
 
+namespace {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+/// S x = r by S = L D L', from S's lower triangle, which L and D replace; x replaces r. Written out, so that the compiler unrolls it.
+inline void solve_positive_definite(Matrix6& s, Vector6& x) {
+  constexpr int n = 6;
+  Vector6 inverse_d;
+  for (int j = 0; j < n; ++j) {
+    inverse_d[j] = 1 / s(j, j);
+    for (int i = j + 1; i < n; ++i) {
+      const double l = s(i, j) * inverse_d[j];
+      for (int k = i; k < n; ++k) s(k, i) -= l * s(k, j);
+    }
+    for (int i = j + 1; i < n; ++i) s(i, j) *= inverse_d[j];
+  }
+  for (int j = 0; j < n; ++j) {
+    for (int i = j + 1; i < n; ++i) x[i] -= s(i, j) * x[j];
+  }
+  x = x.cwiseProduct(inverse_d);
+  for (int j = n - 1; j >= 0; --j) {
+    for (int i = j + 1; i < n; ++i) x[j] -= s(i, j) * x[i];
+  }
+}
+
+}  // namespace
+
 Acceleration acceleration(const Robot& robot, const ArmConstants& k, const Configuration& at, const Vector9& v, const Vector3& u,
                           const Vector3& f) {
   // tip forces F_1 = lambda_1 + lambda_2, F_2 = -lambda_1, F_3 = -lambda_2 move the tips by  a_i + W_i F_i,  W_i = R_i P m^-1 P' R_i'   (5.6)
@@ -81,15 +106,14 @@ Acceleration acceleration(const Robot& robot, const ArmConstants& k, const Confi
   }
   // [ W1 + W2    W1    ] [ lambda_1 ]     [ tip_1 - tip_2 ]
   // [   W1     W1 + W3 ] [ lambda_2 ] = - [ tip_1 - tip_3 ]
-  Eigen::Matrix<double, 6, 6> s;
+  Matrix6 s;
   s.topLeftCorner<3, 3>() = w[0] + w[1];
-  s.bottomLeftCorner<3, 3>() = s.topRightCorner<3, 3>() = w[0];
+  s.bottomLeftCorner<3, 3>() = w[0];
   s.bottomRightCorner<3, 3>() = w[0] + w[2];
-  Vector6 rhs;
-  rhs.head<3>() = tip[1] - tip[0];
-  rhs.tail<3>() = tip[2] - tip[0];
   Acceleration out;
-  out.lambda = s.llt().solve(rhs);
+  out.lambda.head<3>() = tip[1] - tip[0];
+  out.lambda.tail<3>() = tip[2] - tip[0];
+  solve_positive_definite(s, out.lambda);
   const Vector3 l1 = out.lambda.head<3>(), l2 = out.lambda.tail<3>();
   const std::array<Vector3, kArms> closing{l1 + l2, -l1, -l2};
   for (int i = 0; i < kArms; ++i) {
@@ -97,6 +121,14 @@ Acceleration acceleration(const Robot& robot, const ArmConstants& k, const Confi
     out.v_rate.segment<3>(3 * i) = free[n] + ArmInertia(k, at[i]).solve(p[n].transpose() * closing[n]);
   }
   return out;
+}
+
+ArmResidual arm_residual(const Robot& robot, const ArmConstants& k, const ArmConfiguration& at, const Vector3& v, const Vector3& v_rate,
+                         const Vector3& force) {
+  const double alpha1 = 2 * robot.stabilisation, alpha0 = robot.stabilisation * robot.stabilisation;
+  const Matrix3 p = at.jacobian(robot);
+  return {ArmInertia(k, at) * v_rate + coriolis(k, at, v) + k.damping.cwiseProduct(v) + gravity(k, at) - p.transpose() * force,
+          p * (v_rate + alpha1 * v) + at.bias(robot, v) + alpha0 * at.wrist(robot)};
 }
 
 }  // namespace tenon::delta

@@ -111,4 +111,12 @@ struct Acceleration {
 Acceleration acceleration(const Robot& robot, const ArmConstants& k, const Configuration& at, const Vector9& v, const Vector3& u,
                           const Vector3& f);
 
+/// What one arm adds to the index-1 form, in its own frame.
+struct ArmResidual {
+  Vector3 balance;  // m v' + c + damping v + g - P' force, N m
+  Vector3 tip;      // P v' + Pdot v + alpha1 P v + alpha0 psi, m/s^2: the same for all arms where the closure holds
+};
+ArmResidual arm_residual(const Robot& robot, const ArmConstants& k, const ArmConfiguration& at, const Vector3& v, const Vector3& v_rate,
+                         const Vector3& force);
+
 }  // namespace tenon::delta

@@ -12,6 +12,7 @@ double Gripper::opening(double t) const {
 }
 
 Vector3 Push::at(double t) const {
+  if (amplitude.isZero()) return constant;
   // phase = 2 pi f_0 T/ln(f_1/f_0) ((f_1/f_0)^(t/T) - 1)
   const double ratio = std::log(to / from), turns = ratio == 0 ? from * t : from * duration / ratio * std::expm1(ratio * t / duration);
   return constant + amplitude * std::sin(2 * std::numbers::pi * turns);

@@ -108,34 +108,40 @@ double SceneDae::object_force(double t, ConstVectorRef x) const {
   return push - object.stiffness * (x[object_] - object.position) - object.damping * x[object_ + 1];
 }
 
+std::array<Vector3, kArms> SceneDae::tip_forces(const DaePoint& at) const {
+  Vector3 force = scene_.push.on_object ? Vector3(Vector3::Zero()) : scene_.push.at(at.t);
+  for (int i = 0; i < num_contacts(); ++i) force += at.y[kContact + i] * contact(i).normal;
+  const Vector3 third = force / 3, l1 = at.y.head<3>(), l2 = at.y.segment<3>(3);
+  return {third + l1 + l2, to_arm(1, third - l1), to_arm(2, third - l2)};
+}
+
 void SceneDae::residual(const DaeMode& mode, const DaePoint& at, Workspace&, VectorRef F) const {
   const Robot& robot = scene_.robot;
-  const Vector9 q = at.x.head<9>(), v = at.x.segment<9>(9), v_rate = at.xdot.segment<9>(9);
-  const Configuration configuration(q);
-  const Matrix39 j_v = simulation_jacobian(robot, configuration);
-  const Matrix69 h = closure_jacobian(robot, configuration);
-  const Vector3 wrist = wrist_position(robot, configuration), velocity = j_v * v;
-  const Vector3 push = scene_.push.at(at.t);
+  const Configuration configuration(Vector9(at.x.head<9>()));
+  const std::array<Vector3, kArms> force = tip_forces(at);
+  Vector3 wrist = Vector3::Zero(), velocity = Vector3::Zero();
+  std::array<Vector3, kArms> tip;
 
-  Vector3 force = scene_.push.on_object ? Vector3(Vector3::Zero()) : push;
+  F.head<9>() = at.xdot.head<9>() - at.x.segment<9>(9);
+  for (int i = 0; i < kArms; ++i) {
+    const Vector3 v = at.x.segment<3>(9 + 3 * i);
+    const ArmResidual arm = arm_residual(robot, constants_, configuration[i], v, at.xdot.segment<3>(9 + 3 * i), force[std::size_t(i)]);
+    F.segment<3>(9 + 3 * i) = arm.balance;
+    F[9 + 3 * i] -= at.y[kTorque + i];
+    tip[std::size_t(i)] = to_world(i, arm.tip);
+    wrist += to_world(i, configuration[i].wrist(robot)) / 3;
+    velocity += to_world(i, configuration[i].jacobian(robot) * v) / 3;
+  }
+  F.segment<3>(num_states_) = tip[0] - tip[1];
+  F.segment<3>(num_states_ + 3) = tip[0] - tip[2];
+  F.segment<3>(num_states_ + kTorque) = at.y.segment<3>(kTorque) - at.u - torque(mode, at.t, at.x, configuration);
+
   double on_object = 0;
   for (int i = 0; i < num_contacts(); ++i) {
     const double y = at.y[kContact + i];
-    force += y * contact(i).normal;
     if (contact(i).is_finger) on_object -= y * contact(i).normal.dot(controller_options_.tactile_axis);
     F[num_states_ + kContact + i] = y - touch(i, mode, at.t, at.x, wrist, velocity).force;
   }
-
-  F.head<9>() = at.xdot.head<9>() - v;
-  Vector9 balance = -j_v.transpose() * force - h.transpose() * at.y.head<6>();
-  for (int i = 0; i < kArms; ++i) {
-    const Vector3 rate = v.segment<3>(3 * i);
-    balance.segment<3>(3 * i) += ArmInertia(constants_, configuration[i]) * Vector3(v_rate.segment<3>(3 * i)) +
-                                 coriolis(constants_, configuration[i], rate) + constants_.damping.cwiseProduct(rate) +
-                                 gravity(constants_, configuration[i]);
-    balance[3 * i] -= at.y[kTorque + i];
-  }
-  F.segment<9>(9) = balance;
   if (integral_ >= 0) F.segment<3>(integral_) = at.xdot.segment<3>(integral_) - integral_rate(at.t, at.x, wrist);
   if (object_ >= 0) {
     F[object_] = at.xdot[object_] - at.x[object_ + 1];
@@ -145,10 +151,6 @@ void SceneDae::residual(const DaeMode& mode, const DaePoint& at, Workspace&, Vec
     F.segment<3>(tool_) = at.xdot.segment<3>(tool_) - at.x.segment<3>(tool_ + 3);
     F.segment<3>(tool_ + 3) = at.xdot.segment<3>(tool_ + 3) - tool_acceleration(at.x);
   }
-  const double p = robot.stabilisation;
-  F.segment<6>(num_states_) =
-      h * v_rate + closure_bias(robot, configuration, v) + 2 * p * (h * v) + p * p * closure(robot, configuration);
-  F.segment<3>(num_states_ + kTorque) = at.y.segment<3>(kTorque) - at.u - torque(mode, at.t, at.x, configuration);
 }
 
 void SceneDae::derivatives(const DaeMode& mode, double t, ConstVectorRef x, ConstVectorRef u, Workspace&, VectorRef xdot,
@@ -156,11 +158,10 @@ void SceneDae::derivatives(const DaeMode& mode, double t, ConstVectorRef x, Cons
   const Robot& robot = scene_.robot;
   const Vector9 q = x.head<9>(), v = x.segment<9>(9);
   const Configuration configuration(q);
-  const Vector3 push = scene_.push.at(t);
-  Vector3 force = scene_.push.on_object ? Vector3(Vector3::Zero()) : push;
+  Vector3 force = scene_.push.on_object ? Vector3(Vector3::Zero()) : scene_.push.at(t);
   double on_object = 0;
-  const Vector3 wrist = wrist_position(robot, configuration);
   if (num_contacts() > 0) {
+    const Vector3 wrist = wrist_position(robot, configuration);
     const Vector3 velocity = simulation_jacobian(robot, configuration) * v;
     for (int i = 0; i < num_contacts(); ++i) {
       const double y_i = y[kContact + i] = touch(i, mode, t, x, wrist, velocity).force;
@@ -174,7 +175,7 @@ void SceneDae::derivatives(const DaeMode& mode, double t, ConstVectorRef x, Cons
   xdot.segment<9>(9) = acceleration.v_rate;
   y.head<6>() = acceleration.lambda;
   y.segment<3>(kTorque) = motors;
-  if (integral_ >= 0) xdot.segment<3>(integral_) = integral_rate(t, x, wrist);
+  if (integral_ >= 0) xdot.segment<3>(integral_) = integral_rate(t, x, wrist_position(robot, configuration));
   if (object_ >= 0) {
     xdot[object_] = x[object_ + 1];
     xdot[object_ + 1] = (object_force(t, x) + on_object) / scene_.object.mass;
@@ -182,41 +183,6 @@ void SceneDae::derivatives(const DaeMode& mode, double t, ConstVectorRef x, Cons
   if (tool_ >= 0) {
     xdot.segment<3>(tool_) = x.segment<3>(tool_ + 3);
     xdot.segment<3>(tool_ + 3) = tool_acceleration(x);
-  }
-}
-
-void SceneDae::jacobian(const DaeMode& mode, const DaePoint& at, double alpha, Workspace& workspace, std::span<double> values) const {
-  const int n = num_states_ + num_algebraics();
-  Eigen::Map<Eigen::MatrixXd> J(values.data(), n, n);
-  constexpr double kStep = 6e-6;  // cube root of the rounding
-  Vector x = at.x, plus(n), minus(n);
-  for (int k = 0; k < num_states_; ++k) {
-    const double step = kStep * (1 + std::abs(x[k]));
-    x[k] = at.x[k] + step;
-    residual(mode, DaePoint(at.t, at.xdot, x, at.y, at.u), workspace, plus);
-    x[k] = at.x[k] - step;
-    residual(mode, DaePoint(at.t, at.xdot, x, at.y, at.u), workspace, minus);
-    x[k] = at.x[k];
-    J.col(k) = (plus - minus) / (2 * step);
-  }
-  J.diagonal().head(num_states_).array() += alpha;  // xdot, but for the rows with masses
-  const Configuration configuration(Vector9(at.x.head<9>()));
-  const Matrix69 h = closure_jacobian(scene_.robot, configuration);
-  const Matrix39 j_v = simulation_jacobian(scene_.robot, configuration);
-  J.block<9, 9>(9, 9) -= alpha * Eigen::Matrix<double, 9, 9>::Identity();
-  for (int i = 0; i < kArms; ++i) J.block<3, 3>(9 + 3 * i, 9 + 3 * i) += alpha * ArmInertia(constants_, configuration[i]).matrix();
-  J.block<6, 9>(num_states_, 9) += alpha * h;
-  if (object_ >= 0) J(object_ + 1, object_ + 1) += alpha * (scene_.object.mass - 1);
-
-  J.rightCols(num_algebraics()).setZero();
-  J.bottomRightCorner(num_algebraics(), num_algebraics()).bottomRightCorner(3 + num_contacts(), 3 + num_contacts()).setIdentity();
-  J.block<9, 6>(9, num_states_) = -h.transpose();
-  for (int i = 0; i < kArms; ++i) J(9 + 3 * i, num_states_ + kTorque + i) = -1;
-  for (int i = 0; i < num_contacts(); ++i) {
-    J.block<9, 1>(9, num_states_ + kContact + i) = -j_v.transpose() * contact(i).normal;
-    if (object_ >= 0 && contact(i).is_finger) {
-      J(object_ + 1, num_states_ + kContact + i) = contact(i).normal.dot(controller_options_.tactile_axis);
-    }
   }
 }
 

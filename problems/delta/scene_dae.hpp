@@ -29,7 +29,7 @@ class SceneDae final : public Dae {
   Workspace make_workspace() const override;
 
   void residual(const DaeMode& mode, const DaePoint& at, Workspace& workspace, VectorRef F) const override;
-  /// Columns of xdot and y as they are; those of x by central differences of the residual, which is what Newton's method needs.
+  /// Exact but for the columns of x, which are central differences of the arms' terms and of the continuous law: what Newton's method needs.
   void jacobian(const DaeMode& mode, const DaePoint& at, double alpha, Workspace& workspace, std::span<double> values) const override;
   bool has_derivatives() const override { return true; }
   void derivatives(const DaeMode& mode, double t, ConstVectorRef x, ConstVectorRef u, Workspace& workspace, VectorRef xdot,
@@ -67,6 +67,8 @@ class SceneDae final : public Dae {
   bool is_continuous() const { return scene_.control == ControlMode::continuous; }
   bool is_sampled() const { return scene_.control == ControlMode::sampled; }
 
+  /// Forces on the three tips in the arms' frames, N.
+  std::array<Vector3, kArms> tip_forces(const DaePoint& at) const;
   Touch touch(int i, const DaeMode& mode, double t, ConstVectorRef x, const Vector3& wrist, const Vector3& velocity) const;
   Vector3 torque(const DaeMode& mode, double t, ConstVectorRef x, const Configuration& at) const;
   Vector3 integral_rate(double t, ConstVectorRef x, const Vector3& wrist) const;
