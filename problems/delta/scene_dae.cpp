@@ -34,10 +34,12 @@ SceneDae::SceneDae(Scene scene)
   q_ = inverse.q;
   const Configuration at(q_);
   const Motion motion(scene_.robot, at);
-  v_ = scene_.velocity.isZero() ? Vector9(Vector9::Zero()) : motion.rates(motion.motors(scene_.velocity));
-  if (!v_.allFinite() || motion.singularity(scene_.robot, at).s2 < kSingular) {
-    throw std::invalid_argument("the wrist starts at a singularity");
+  const bool moves = !scene_.velocity.isZero();
+  if (motion.singularity(scene_.robot, at).s2 < kSingular || (moves && !Sensed(scene_.robot, at, Vector9::Zero()).ok)) {
+    throw std::invalid_argument("the wrist starts at a singularity, where its velocity does not determine the arms'");
   }
+  v_.setZero();
+  if (moves) v_ = motion.rates(motion.motors(scene_.velocity));
   const auto add_states = [this](bool present, int count) {
     const int first = present ? num_states_ : -1;
     if (present) num_states_ += count;
@@ -81,6 +83,7 @@ Vector3 SceneDae::torque(const DaeMode& mode, double t, ConstVectorRef x, const 
   if (is_sampled()) return mode.held.head<3>();
   if (!is_continuous()) return Vector3::Zero();
   const Sensed sensed(believed_, at, x.segment<9>(9));
+  if (!sensed.ok) return Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
   const double most = scene_.robot.torque_limit;
   return law_.torque(sensed, scene_.reference.at(t), x.segment<3>(integral_)).torque.cwiseMax(-most).cwiseMin(most);
 }
