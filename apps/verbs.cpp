@@ -9,6 +9,7 @@ int run_compare(const Arguments&);
 int run_fit(const Arguments&);
 int run_list(const Arguments&);
 int run_robot(const Arguments&);
+int run_simulate(const Arguments&);
 int run_solve(const Arguments&);
 
 const std::vector<Verb>& verbs() {
@@ -30,6 +31,13 @@ const std::vector<Verb>& verbs() {
        {"inverse", "forward", "jacobians", "workspace", "set", "json", "quiet"},
        &run_robot},
       {"fit", "thrust and torque polynomials from calibration data", "BENCH.csv", 1, 1, {"degree", "constant", "json"}, &run_fit},
+      {"simulate",
+       "a scene in time: bodies, contacts, events, energy",
+       "SCENE",
+       1,
+       1,
+       {"output", "events", "solver", "set", "tolerance", "json", "quiet", "real-time"},
+       &run_simulate},
       {"solve",
        "one nonlinear program",
        "PROBLEM",

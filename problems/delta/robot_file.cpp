@@ -1,15 +1,11 @@
 #include "tenon/problems/delta/robot_file.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
-#include "tenon/core/embedded_file.hpp"
-#include "tenon/core/nearest_name.hpp"
-#include "tenon/core/read_file.hpp"
+#include "tenon/core/named_file.hpp"
 #include "tenon/problems/delta/robot_keys.hpp"
 #include "tenon/problems/toml/document.hpp"
 
@@ -38,30 +34,16 @@ Robot parse_robot(const std::string& text, const std::string& file, const std::v
 }
 
 std::vector<std::string> builtin_robots() {
-  std::vector<std::string> names;
-  for (const EmbeddedFile& file : embedded_robots()) names.emplace_back(file.name);
-  std::sort(names.begin(), names.end());
-  return names;
+  return names_of(embedded_robots());
 }
 
 std::string describe_builtin_robot(const std::string& name) {
-  for (const EmbeddedFile& file : embedded_robots()) {
-    if (file.name == name) return std::string(file.text.substr(2, file.text.find('\n') - 2));
-  }
-  return "";
+  return description_of(name, embedded_robots());
 }
 
 Robot load_robot(const std::string& name_or_path, const std::vector<std::string>& overrides) {
-  for (const EmbeddedFile& file : embedded_robots()) {
-    if (file.name == name_or_path) return parse_robot(std::string(file.text), name_or_path, overrides);
-  }
-  const bool is_path =
-      name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml") || std::filesystem::exists(name_or_path);
-  if (!is_path) {
-    throw std::invalid_argument(fmt::format("unknown robot '{}', the nearest is '{}' (expected one of {}, or a TOML file)", name_or_path,
-                                            nearest_name(name_or_path, builtin_robots()), fmt::join(builtin_robots(), ", ")));
-  }
-  return parse_robot(read_file(name_or_path), name_or_path, overrides);
+  const NamedFile file = open_named_file("robot", name_or_path, embedded_robots());
+  return parse_robot(file.text, file.name, overrides);
 }
 
 std::string to_toml(const Robot& robot) {

@@ -8,9 +8,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "tenon/core/embedded_file.hpp"
+#include "tenon/core/named_file.hpp"
 #include "tenon/core/nearest_name.hpp"
-#include "tenon/core/read_file.hpp"
 #include "tenon/problems/delta/robot_file.hpp"
 #include "tenon/problems/delta/robot_keys.hpp"
 #include "tenon/problems/toml/document.hpp"
@@ -251,34 +250,22 @@ Scene parse_scene(const std::string& text, const std::string& file, const std::v
 }
 
 std::vector<std::string> builtin_scenes() {
-  std::vector<std::string> names;
-  for (const EmbeddedFile& file : embedded_delta_scenes()) names.emplace_back(file.name);
-  std::ranges::sort(names);
-  return names;
-}
-
-std::string builtin_scene_text(const std::string& name) {
-  for (const EmbeddedFile& file : embedded_delta_scenes()) {
-    if (file.name == name) return std::string(file.text);
-  }
-  return "";
+  return names_of(embedded_delta_scenes());
 }
 
 std::string describe_builtin_scene(const std::string& name) {
-  const std::string text = builtin_scene_text(name);
-  return text.empty() ? "" : text.substr(2, text.find('\n') - 2);
+  return description_of(name, embedded_delta_scenes());
+}
+
+bool has_delta_robot(const std::string& name_or_path) {
+  if (std::ranges::count(builtin_scenes(), name_or_path) > 0) return true;
+  if (!std::filesystem::is_regular_file(name_or_path)) return false;
+  return toml_file::Document::read(name_or_path).root({}).has("robot");
 }
 
 Scene load_scene(const std::string& name_or_path, const std::vector<std::string>& overrides) {
-  const std::string text = builtin_scene_text(name_or_path);
-  if (!text.empty()) return parse_scene(text, name_or_path, overrides);
-  const bool is_path =
-      name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml") || std::filesystem::exists(name_or_path);
-  if (!is_path) {
-    throw std::invalid_argument(fmt::format("unknown scene '{}', the nearest is '{}' (expected one of {}, or a TOML file)", name_or_path,
-                                            nearest_name(name_or_path, builtin_scenes()), fmt::join(builtin_scenes(), ", ")));
-  }
-  return parse_scene(read_file(name_or_path), name_or_path, overrides);
+  const NamedFile file = open_named_file("scene", name_or_path, embedded_delta_scenes());
+  return parse_scene(file.text, file.name, overrides);
 }
 
 }  // namespace delta

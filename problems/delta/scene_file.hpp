@@ -24,8 +24,8 @@ namespace tenon::delta {
 std::vector<std::string> builtin_scenes();
 /// What a built-in scene is, from the comment that opens its file.
 std::string describe_builtin_scene(const std::string& name);
-/// The text of a built-in scene; empty where there is none of that name.
-std::string builtin_scene_text(const std::string& name);
+/// Whether this scene has a delta robot: one of those names, or a file with a [robot].
+bool has_delta_robot(const std::string& name_or_path);
 
 /// A built-in scene, or one from a file, with overrides `key.path=value`, or NAME=VALUE for one of its [parameters]. Throws InputError, with
 /// the place of what is wrong; std::invalid_argument for a name that is neither, the nearest named.
