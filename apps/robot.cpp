@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "tenon/apps/comma_list.hpp"
+#include "tenon/apps/impedance.hpp"
 #include "tenon/apps/json.hpp"
 #include "tenon/apps/verb.hpp"
 #include "tenon/core/csv.hpp"
@@ -156,6 +157,43 @@ void report_workspace(const Robot& robot, const std::string& file, Json* json, b
   }
 }
 
+std::string text_of(const LoopMargins& m) {
+  return fmt::format("phase {:.3g} deg, gain {:.3g}, delay {:.3g} ms, crossover {:.3g} Hz", m.phase, m.gain, 1e3 * m.delay, m.crossover);
+}
+
+Json json_of(const LoopMargins& m) {
+  return Json::object().set("phase_deg", m.phase).set("gain", m.gain).set("delay", m.delay).set("crossover", m.crossover);
+}
+
+void report_impedance(const std::string& robot, const std::string& file, Json* json, bool quiet) {
+  CsvWriter csv(file, {"frequency", "impedance_off", "impedance_on", "linear_off", "linear_on"});
+  const ImpedanceCurve curve = measure_impedance(robot, {});
+  double least = 1;
+  double lowest = 0, highest = 0;  // of the band where the loop softens
+  for (const ImpedancePoint& p : curve.points) {
+    csv << p.frequency << p.off << p.on << p.linear_off << p.linear_on;
+    csv.end_row();
+    least = std::min(least, p.on / p.off);
+    if (p.on >= p.off) continue;
+    if (lowest == 0) lowest = p.frequency;
+    highest = p.frequency;
+  }
+  csv.finish();
+  if (json) {
+    json->set("impedance", Json::object()
+                               .set("file", file)
+                               .set("least_ratio", least)
+                               .set("softer_from", lowest)
+                               .set("softer_to", highest)
+                               .set("margins", json_of(curve.margins))
+                               .set("margins_delayed_2ms", json_of(curve.margins_delayed)));
+  } else if (!quiet) {
+    fmt::print("delta-grasp with {}: |F/v| at the part is lower with the tactile loop between {:.3g} and {:.3g} Hz, at best {:.3g} of what it is without\n",
+               robot, lowest, highest, least);
+    fmt::print("  margins          {}\n  with 2 ms delay  {}\n", text_of(curve.margins), text_of(curve.margins_delayed));
+  }
+}
+
 void report_robot(const Robot& robot, Json* json) {
   if (json) {
     json->set("reach", reach(robot)).set("axial_reach", axial_reach(robot));
@@ -175,15 +213,18 @@ int run_robot(const Arguments& arguments) {
   Json json = Json::object();
   json.set("schema", 1).set("robot", robot.name);
   Json* const out = arguments.json ? &json : nullptr;
-  if (!arguments.workspace.empty()) check_output_path(arguments.workspace);
+  for (const std::string& file : {arguments.workspace, arguments.impedance}) {
+    if (!file.empty()) check_output_path(file);
+  }
   if (arguments.inverse || arguments.forward) {
     const Pose pose = arguments.inverse ? pose_of_wrist(robot, parse_vector("--inverse", *arguments.inverse))
                                         : pose_of_motors(robot, parse_vector("--forward", *arguments.forward));
     report_pose(robot, pose, arguments.jacobians, out, arguments.quiet);
-  } else if (arguments.workspace.empty()) {
+  } else if (arguments.workspace.empty() && arguments.impedance.empty()) {
     report_robot(robot, out);
   }
   if (!arguments.workspace.empty()) report_workspace(robot, arguments.workspace, out, arguments.quiet);
+  if (!arguments.impedance.empty()) report_impedance(arguments.names.front(), arguments.impedance, out, arguments.quiet);
   if (out) print(json);
   return kFinished;
 }

@@ -28,7 +28,7 @@ const std::vector<Verb>& verbs() {
        "ROBOT",
        1,
        1,
-       {"inverse", "forward", "jacobians", "workspace", "set", "json", "quiet"},
+       {"inverse", "forward", "jacobians", "workspace", "impedance", "set", "json", "quiet"},
        &run_robot},
       {"fit", "thrust and torque polynomials from calibration data", "BENCH.csv", 1, 1, {"degree", "constant", "json"}, &run_fit},
       {"simulate",

@@ -10,6 +10,7 @@
 #include "tenon/core/trajectory.hpp"
 #include "tenon/problems/delta/scene_dae.hpp"
 #include "tenon/problems/delta/scene_file.hpp"
+#include "tenon/problems/delta/tactile_loop.hpp"
 #include "tenon/solvers/make_integrator.hpp"
 #include "tenon/tests/expect_message.hpp"
 
@@ -54,7 +55,7 @@ struct Record {
   }
 };
 
-Record run(const std::string& name, const Overrides& overrides = {}, const std::string& integrator = "dop853") {
+Record record(const std::string& name, const Overrides& overrides = {}, const std::string& integrator = "dop853") {
   Record out;
   out.scene = load_scene(name, overrides);
   const SceneDae dae(out.scene);
@@ -132,7 +133,7 @@ TEST(DeltaScenes, DerivativesSolveTheResidualAndTheJacobianIsItsDerivative) {
 
 TEST(DeltaScenes, FreeFallKeepsItsEnergyAndItsArmsClosed) {
   for (const char* integrator : {"dop853", "ida"}) {
-    const Record fall = run("delta-free-fall", {}, integrator);
+    const Record fall = record("delta-free-fall", {}, integrator);
     EXPECT_LE(energy_drift(fall), 1e-10) << integrator;
     EXPECT_LE(fall.largest("closure"), 1e-10) << integrator;
   }
@@ -140,7 +141,7 @@ TEST(DeltaScenes, FreeFallKeepsItsEnergyAndItsArmsClosed) {
 
 TEST(DeltaScenes, TheFallGoesThroughTypeTwo) {
   for (const char* integrator : {"dop853", "ida"}) {
-    const Record fall = run("delta-singularity", {}, integrator);
+    const Record fall = record("delta-singularity", {}, integrator);
     EXPECT_GT(fall["det_a"].front(), 0.1);
     EXPECT_LT(fall["det_a"].back(), 0);
     EXPECT_LE(energy_drift(fall), 1e-9) << integrator;
@@ -149,14 +150,14 @@ TEST(DeltaScenes, TheFallGoesThroughTypeTwo) {
 }
 
 TEST(DeltaScenes, TheFourTrackingRowsAreThePublishedOnes) {
-  EXPECT_LE(run("delta-circle").rms(2), 1e-9);
-  EXPECT_NEAR(run("delta-circle", {"feed_forward=false"}).rms(2), 4.119e-3, 4.119e-5);
-  EXPECT_NEAR(run("delta-circle", {"coriolis=false"}).rms(2), 0.508e-3, 0.508e-5);
-  EXPECT_NEAR(run("delta-circle", {"coriolis=false", "inertia=projected-left"}).rms(2), 26.8e-3, 0.268e-3);
+  EXPECT_LE(record("delta-circle").rms(2), 1e-9);
+  EXPECT_NEAR(record("delta-circle", {"feed_forward=false"}).rms(2), 4.119e-3, 4.119e-5);
+  EXPECT_NEAR(record("delta-circle", {"coriolis=false"}).rms(2), 0.508e-3, 0.508e-5);
+  EXPECT_NEAR(record("delta-circle", {"coriolis=false", "inertia=projected-left"}).rms(2), 26.8e-3, 0.268e-3);
 }
 
 TEST(DeltaScenes, TheStepIsThatOfThreePolesAtSeven) {
-  const Record step = run("delta-step");
+  const Record step = record("delta-step");
   for (std::size_t k = 0; k < step.size(); ++k) {
     const double t = step["t"][k], decay = (1 + 7 * t - 49 * t * t) * std::exp(-7 * t);
     EXPECT_LE((step.error(k) - decay * Vector3(-0.02, -0.01, -0.02)).lpNorm<Eigen::Infinity>(), 1e-9) << "t = " << t;
@@ -173,7 +174,7 @@ TEST(DeltaScenes, TheStepIsThatOfThreePolesAtSeven) {
 
 TEST(DeltaScenes, WithRealSensorsAndADisturbanceTheWristStaysWithinThirtyMicrometres) {
   for (const char* push : {"[0.3,0,0]", "[0,-0.3,0]", "[0,0,0.3]", "[0,0,-0.3]", "[-0.1732,0.1732,0.1732]"}) {
-    const Record held = run("delta-step", {"controller.mode=sampled", "controller.rate=10000", "controller.delay=1", "controller.encoder_bits=20",
+    const Record held = record("delta-step", {"controller.mode=sampled", "controller.rate=10000", "controller.delay=1", "controller.encoder_bits=20",
                                         "controller.filter=500", std::string("push.constant=") + push, "simulation.rtol=1e-6",
                                         "simulation.output_step=0.1"});
     EXPECT_LE(held.largest_error(3), 30e-6) << push;
@@ -181,7 +182,7 @@ TEST(DeltaScenes, WithRealSensorsAndADisturbanceTheWristStaysWithinThirtyMicrome
 }
 
 TEST(DeltaScenes, AJoystickLeadsTheWristToWithinThirtyMicrometresOfWhereItStops) {
-  const Record led = run("delta-joystick");
+  const Record led = record("delta-joystick");
   EXPECT_GT(led.largest_error(0), 5e-3);  // no feed-forward
   EXPECT_LE(led.largest_error(7), 30e-6);
 }
@@ -190,7 +191,7 @@ TEST(DeltaScenes, IdaConfirmsTheOneStepMethodAndEveryContact) {
   for (const char* name : {"delta-circle", "delta-wall", "delta-grasp", "delta-impact-hard", "delta-impact-soft"}) {
     SCOPED_TRACE(name);
     const Overrides shorter{"simulation.duration=1.7", "simulation.rtol=1e-9"};
-    const Record one_step = run(name, shorter), ida = run(name, shorter, "ida");
+    const Record one_step = record(name, shorter), ida = record(name, shorter, "ida");
     ASSERT_EQ(one_step.events.size(), ida.events.size());
     for (std::size_t k = 0; k < ida.events.size(); ++k) {
       EXPECT_EQ(one_step.events[k].contact, ida.events[k].contact);
@@ -204,7 +205,7 @@ TEST(DeltaScenes, IdaConfirmsTheOneStepMethodAndEveryContact) {
 TEST(DeltaScenes, TheWallIsTouchedOnceAndTheForceSettles) {
   for (const Overrides& change : {Overrides{}, {"controller.payload=0.08"}, {"controller.payload=0.12"}, {"controller.delay=2"},
                                   {"controller.payload=0.12", "controller.delay=2"}}) {
-    const Record wall = run("delta-wall", change);
+    const Record wall = record("delta-wall", change);
     ASSERT_EQ(wall.events.size(), 1U);
     EXPECT_EQ(wall.events[0].to, 2);
     const std::vector<double>& force = wall["lambda_wall"];
@@ -221,18 +222,37 @@ TEST(DeltaScenes, TheWallIsTouchedOnceAndTheForceSettles) {
 TEST(DeltaScenes, TheGraspClosesWithoutSwitchingAndBothFingersShareTheForce) {
   for (const Overrides& change : {Overrides{}, {"controller.payload=0.12"}, {"controller.payload=0.18"}, {"controller.delay=2"},
                                   {"controller.payload=0.18", "controller.delay=2"}}) {
-    const Record grasp = run("delta-grasp", change);
+    const Record grasp = record("delta-grasp", change);
     ASSERT_EQ(grasp.events.size(), 2U);  // each finger touches once and stays
     EXPECT_NEAR(grasp["lambda_left"].back(), grasp["lambda_right"].back(), 0.02);
     EXPECT_NEAR(grasp["lambda_left"].back(), 2000 * 0.0005, 0.03);
     EXPECT_NEAR(grasp["object"].back(), 0.006, 1e-4);
   }
-  const Record blind = run("delta-grasp", {"tactile_gain=0"});
+  const Record blind = record("delta-grasp", {"tactile_gain=0"});
   EXPECT_GT(std::abs(blind["lambda_left"].back() - blind["lambda_right"].back()), 1);
 }
 
+TEST(DeltaScenes, TheTactileLoopIsStableUpToItsDelayMarginAndNotBeyond) {
+  const Scene grasp = load_scene("delta-grasp");
+  const LoopMargins margins = TactileLoop(grasp).margins();
+  EXPECT_GT(margins.phase, 60);
+  const auto unrest = [&](double delay) {
+    const int ticks = static_cast<int>(delay / grasp.controller.period);
+    const Record held = record("delta-grasp", {"controller.delay=" + std::to_string(ticks), "simulation.duration=8"});
+    double least = 1e9, most = -1e9;
+    for (std::size_t k = 0; k < held.size(); ++k) {
+      if (held["t"][k] < 6) continue;
+      const double difference = held["lambda_left"][k] - held["lambda_right"][k];
+      least = std::min(least, difference), most = std::max(most, difference);
+    }
+    return most - least;
+  };
+  EXPECT_LT(unrest(0.7 * margins.delay), 1e-2);
+  EXPECT_GT(unrest(1.3 * margins.delay), 0.2);
+}
+
 TEST(DeltaScenes, ImpedanceControlKeepsTheForceOfAnImpactDown) {
-  const Record hard = run("delta-impact-hard"), soft = run("delta-impact-soft");
+  const Record hard = record("delta-impact-hard"), soft = record("delta-impact-soft");
   EXPECT_GT(hard.largest("lambda_wall"), 3 * soft.largest("lambda_wall"));
   // the motors are at their limits, the integrator with them, and the robot is stable and says so
   EXPECT_EQ(hard.largest("saturated"), 1);
@@ -245,7 +265,7 @@ TEST(DeltaScenes, ImpedanceControlKeepsTheForceOfAnImpactDown) {
 }
 
 TEST(DeltaScenes, TheGimbalsTurnTheToolToItsReference) {
-  const Record turned = run("delta-step", {"tool.angle=[0,0,0]", "tool.reference=[0.5,-0.3,1]"});
+  const Record turned = record("delta-step", {"tool.angle=[0,0,0]", "tool.reference=[0.5,-0.3,1]"});
   EXPECT_NEAR(turned["yaw"].back(), 0.5, 1e-9);
   EXPECT_NEAR(turned["pitch"].back(), -0.3, 1e-9);
   EXPECT_NEAR(turned["roll"].back(), 1, 1e-9);

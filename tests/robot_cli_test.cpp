@@ -57,6 +57,21 @@ TEST_F(RobotVerb, MapsTheWorkspace) {
   }
 }
 
+TEST_F(RobotVerb, TheTactileLoopSoftensTheGraspInABandAsItsLinearModelSays) {
+  const Ended ended = run("delta --impedance curve.csv --json");
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.out.find("\"phase_deg\": "), std::string::npos) << ended.out;
+  const CsvTable curve = read_csv(folder_.path("curve.csv"));
+  ASSERT_GE(curve.rows(), 40);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(curve.rows()); ++k) {
+    EXPECT_NEAR(curve["impedance_off"][k], curve["linear_off"][k], 0.04 * curve["linear_off"][k]) << curve["frequency"][k];
+    EXPECT_NEAR(curve["impedance_on"][k], curve["linear_on"][k], 0.04 * curve["linear_on"][k]) << curve["frequency"][k];
+    if (curve["frequency"][k] < 12) {
+      EXPECT_LT(curve["impedance_on"][k], 0.7 * curve["impedance_off"][k]);
+    }
+  }
+}
+
 TEST_F(RobotVerb, RefusesWhatMakesNoSense) {
   expect_bad_input("dleta", "unknown robot 'dleta', the nearest is 'delta'");
   expect_bad_input("delta --inverse 0,0,0.7", "--inverse (0, 0, 0.7) is out of reach of arm 1, 0.0519259 m from the workspace");

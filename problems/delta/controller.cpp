@@ -67,13 +67,15 @@ const Command& Controller::tick(const Measurement& measurement) {
     limit(state_.holding);
     return command_;
   }
-  const Reference wanted = reference();
+  const double shift_rate = move_reference(measurement);
+  Reference wanted = reference();
+  wanted.velocity += shift_rate * options_.tactile_axis;
   command_.wrist = sensed.wrist;
   command_.error = wanted.position - sensed.wrist;
   const LawTorque torque = law_.torque(sensed, wanted, state_.integral);
   state_.holding = torque.gravity;
   limit(torque.torque);
-  integrate(measurement);
+  integrate();
   return command_;
 }
 
@@ -91,14 +93,19 @@ void Controller::limit(const Vector3& torque) {
   command_.saturated = (torque.array().abs() > most).any();
 }
 
-void Controller::integrate(const Measurement& measurement) {
+double Controller::move_reference(const Measurement& measurement) {
+  const double rate = options_.tactile_gain * (measurement.tactile_left - measurement.tactile_right);
+  const double before = state_.shift;
+  state_.shift = std::clamp(before + options_.period * rate, -options_.tactile_limit, options_.tactile_limit);
+  return (state_.shift - before) / options_.period;
+}
+
+void Controller::integrate() {
   const double ki = law_.options().gains.integral;
   if (ki > 0 && !command_.saturated) {
     const double most = options_.integral_limit / ki;
     state_.integral = (state_.integral + options_.period * command_.error).cwiseMax(-most).cwiseMin(most);
   }
-  const double shift = state_.shift + options_.period * options_.tactile_gain * (measurement.tactile_left - measurement.tactile_right);
-  state_.shift = std::clamp(shift, -options_.tactile_limit, options_.tactile_limit);
 }
 
 }  // namespace tenon::delta

@@ -74,7 +74,9 @@ class Controller {
  private:
   Vector3 rate(const Measurement& measurement);
   void limit(const Vector3& torque);
-  void integrate(const Measurement& measurement);
+  /// The tactile loop's integrator; returns the rate at which the reference moves along the axis, m/s.
+  double move_reference(const Measurement& measurement);
+  void integrate();
 
   Law law_;
   ControllerOptions options_;

@@ -11,11 +11,14 @@ double Gripper::opening(double t) const {
   return from + (to - from) * std::clamp((t - begin) / (end - begin), 0.0, 1.0);
 }
 
-Vector3 Push::at(double t) const {
-  if (amplitude.isZero()) return constant;
-  // phase = 2 pi f_0 T/ln(f_1/f_0) ((f_1/f_0)^(t/T) - 1)
+double Push::phase(double t) const {
+  // 2 pi f_0 T/ln(f_1/f_0) ((f_1/f_0)^(t/T) - 1)
   const double ratio = std::log(to / from), turns = ratio == 0 ? from * t : from * duration / ratio * std::expm1(ratio * t / duration);
-  return constant + amplitude * std::sin(2 * std::numbers::pi * turns);
+  return 2 * std::numbers::pi * turns;
+}
+
+Vector3 Push::at(double t) const {
+  return amplitude.isZero() ? constant : Vector3(constant + amplitude * std::sin(phase(t)));
 }
 
 }  // namespace tenon::delta

@@ -42,6 +42,7 @@ struct Push {
   double from = 1, to = 1;      // Hz
   double duration = 1;          // s
   bool on_object = false;       // along the axis, what stands in the vectors' first place
+  double phase(double t) const;   // of the sine, rad
   Vector3 at(double t) const;
 };
 
