@@ -15,12 +15,12 @@ namespace {
 
 using namespace delta;
 
-constexpr double kFrom = 0.4, kTo = 60;      // Hz: a little beyond what is reported, for whole windows
+constexpr double kFrom = 0.4, kTo = 60;  // Hz: a little beyond what is reported, for whole windows
 constexpr double kLowest = 0.5, kHighest = 50;
-constexpr double kSweep = 120;               // s
-constexpr double kSample = 5e-4;             // s
+constexpr double kSweep = 120;    // s
+constexpr double kSample = 5e-4;  // s
 constexpr int kPoints = 41;
-constexpr double kPeriods = 4;               // in the window of one point
+constexpr double kPeriods = 4;  // in the window of one point
 
 /// The part is free and held from the start, and a sine that sweeps upward pushes it, less than the fingers press.
 Scene sweep_scene(const std::string& robot, std::vector<std::string> overrides, bool loop) {
@@ -86,7 +86,8 @@ ImpedanceCurve measure_impedance(const std::string& robot, const std::vector<std
   const std::vector<double> measured_off = sweep(off), measured_on = sweep(on), at = frequencies();
   ImpedanceCurve curve;
   for (std::size_t k = 0; k < at.size(); ++k) {
-    curve.points.push_back({at[k], measured_off[k], measured_on[k], std::abs(linear_off.impedance(at[k])), std::abs(linear_on.impedance(at[k]))});
+    curve.points.push_back(
+        {at[k], measured_off[k], measured_on[k], std::abs(linear_off.impedance(at[k])), std::abs(linear_on.impedance(at[k]))});
   }
   Scene grasp = load_scene("delta-grasp", {"robot.model=\"" + robot + "\""});
   curve.margins = TactileLoop(grasp).margins();

@@ -9,8 +9,8 @@
 namespace tenon {
 
 struct ImpedancePoint {
-  double frequency;            // Hz
-  double off, on;              // |F/v|, N s/m, from the simulated sweep
+  double frequency;              // Hz
+  double off, on;                // |F/v|, N s/m, from the simulated sweep
   double linear_off, linear_on;  // the same by the linear model
 };
 

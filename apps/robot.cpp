@@ -21,8 +21,8 @@ namespace {
 
 using namespace delta;
 
-constexpr int kDivisions = 20;            // of the reach, for the workspace map
-constexpr double kAtSingularity = 1e-6;   // a measure below this: the pose is at the singularity
+constexpr int kDivisions = 20;           // of the reach, for the workspace map
+constexpr double kAtSingularity = 1e-6;  // a measure below this: the pose is at the singularity
 constexpr double kNearSingularity = 1e-2;
 
 struct Pose {
@@ -42,9 +42,10 @@ std::string text_of(const Vector3& v) {
 Pose pose_of_wrist(const Robot& robot, const Vector3& z) {
   const Inverse inverse = inverse_kinematics(robot, z);
   if (!inverse.ok()) {
-    throw std::invalid_argument(fmt::format("--inverse {} is out of reach of arm {}, {:.6g} m from the workspace (expected a point that all arms reach, "
-                                            "on the axis z up to {:.6g} m)",
-                                            text_of(z), inverse.unreachable_arm + 1, distance_to_workspace(robot, z), axial_reach(robot)));
+    throw std::invalid_argument(
+        fmt::format("--inverse {} is out of reach of arm {}, {:.6g} m from the workspace (expected a point that all arms reach, "
+                    "on the axis z up to {:.6g} m)",
+                    text_of(z), inverse.unreachable_arm + 1, distance_to_workspace(robot, z), axial_reach(robot)));
   }
   return {inverse.q, Configuration(inverse.q)};
 }
@@ -55,13 +56,15 @@ Pose pose_of_motors(const Robot& robot, const Vector3& y) {
     case ForwardStatus::solved:
       return {angles(forward.at), forward.at};
     case ForwardStatus::unreachable:
-      throw std::invalid_argument(fmt::format("--forward {}: the elbows are too far apart for the distal links to meet (expected angles of a "
-                                              "closed robot)",
-                                              text_of(y)));
+      throw std::invalid_argument(
+          fmt::format("--forward {}: the elbows are too far apart for the distal links to meet (expected angles of a "
+                      "closed robot)",
+                      text_of(y)));
     default:
-      throw std::invalid_argument(fmt::format("--forward {} is at a singularity of type II: the wrist lies in the plane of the elbows, or "
-                                              "the elbows on a line (expected angles that determine the wrist)",
-                                              text_of(y)));
+      throw std::invalid_argument(
+          fmt::format("--forward {} is at a singularity of type II: the wrist lies in the plane of the elbows, or "
+                      "the elbows on a line (expected angles that determine the wrist)",
+                      text_of(y)));
   }
 }
 
@@ -117,7 +120,8 @@ void report_pose(const Robot& robot, const Pose& pose, bool jacobians, Json* jso
     fmt::print("{}\n", robot.name);
     print_rows("wrist z, m", z.transpose().eval());
     print_rows("q by arm, rad", by_arms(pose.q));
-    fmt::print("  singularity         type I {:.4g}, type II {:.4g}, angles {:.4g} (0 is at it)\n", measure.type_1, measure.type_2, measure.s2);
+    fmt::print("  singularity         type I {:.4g}, type II {:.4g}, angles {:.4g} (0 is at it)\n", measure.type_1, measure.type_2,
+               measure.s2);
   }
   if (!jacobians) return;
   const ArmConstants k(robot);
@@ -143,7 +147,8 @@ void report_workspace(const Robot& robot, const std::string& file, Json* json, b
     csv << p.wrist[0] << p.wrist[1] << p.wrist[2] << p.singularity.type_1 << p.singularity.type_2 << p.singularity.s2 << p.speed_least
         << p.speed_greatest << p.gravity_torque;
     csv.end_row();
-    least = {std::min(least.type_1, p.singularity.type_1), std::min(least.type_2, p.singularity.type_2), std::min(least.s2, p.singularity.s2)};
+    least = {std::min(least.type_1, p.singularity.type_1), std::min(least.type_2, p.singularity.type_2),
+             std::min(least.s2, p.singularity.s2)};
   });
   const long points = csv.rows();
   csv.finish();
@@ -153,7 +158,8 @@ void report_workspace(const Robot& robot, const std::string& file, Json* json, b
   } else if (!quiet) {
     fmt::print("{}: {} points {:.4g} m apart, {:.4g} m^3 below the base, to z = {:.6g} m on the axis\n", robot.name, points, step, volume,
                axial_reach(robot));
-    fmt::print("  nearest to a singularity: type I {:.3g}, type II {:.3g}, angles {:.3g} (0 is at it)\n", least.type_1, least.type_2, least.s2);
+    fmt::print("  nearest to a singularity: type I {:.3g}, type II {:.3g}, angles {:.3g} (0 is at it)\n", least.type_1, least.type_2,
+               least.s2);
   }
 }
 
@@ -188,8 +194,10 @@ void report_impedance(const std::string& robot, const std::string& file, Json* j
                                .set("margins", json_of(curve.margins))
                                .set("margins_delayed_2ms", json_of(curve.margins_delayed)));
   } else if (!quiet) {
-    fmt::print("delta-grasp with {}: |F/v| at the part is lower with the tactile loop between {:.3g} and {:.3g} Hz, at best {:.3g} of what it is without\n",
-               robot, lowest, highest, least);
+    fmt::print(
+        "delta-grasp with {}: |F/v| at the part is lower with the tactile loop between {:.3g} and {:.3g} Hz, at best {:.3g} of what it is "
+        "without\n",
+        robot, lowest, highest, least);
     fmt::print("  margins          {}\n  with 2 ms delay  {}\n", text_of(curve.margins), text_of(curve.margins_delayed));
   }
 }

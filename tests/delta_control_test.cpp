@@ -44,8 +44,8 @@ TEST(DeltaLaw, FeedbackLinearisationGivesTheWristTheAccelerationAskedFor) {
       const Law law(robot, {});
       const Reference reference{sensed.wrist + random_vector(random, 0.02), random_vector(random, 0.3), random_vector(random, 1)};
       const Vector3 integral = random_vector(random, 1e-3);
-      const Vector3 w = reference.acceleration + 21 * (reference.velocity - sensed.velocity) + 147 * (reference.position - sensed.wrist) +
-                        343 * integral;
+      const Vector3 w =
+          reference.acceleration + 21 * (reference.velocity - sensed.velocity) + 147 * (reference.position - sensed.wrist) + 343 * integral;
       const Vector3 torque = law.torque(sensed, reference, integral).torque;
       const Acceleration a = acceleration(robot, law.constants(), at, v, torque, Vector3::Zero());
       Vector3 bias = Vector3::Zero();

@@ -92,7 +92,8 @@ TEST(DeltaTable, FiftyDigitArithmeticAgrees) {
 TEST(DeltaTable, TheReferencePosesAgree) {
   const std::string stem = (kSourceDir / "../shared/reference/deltaB_").string();
   if (!std::filesystem::exists(stem + "ik.csv")) GTEST_SKIP() << stem << "ik.csv is not there";
-  const CsvTable poses = read_csv(stem + "ik.csv"), jacobians = read_csv(stem + "jac.csv"), statics = read_csv(stem + "gravity_inertia.csv");
+  const CsvTable poses = read_csv(stem + "ik.csv"), jacobians = read_csv(stem + "jac.csv"),
+                 statics = read_csv(stem + "gravity_inertia.csv");
   const Robot robot = load_robot("delta");
   ASSERT_EQ(poses.rows(), 20);
   for (std::size_t row = 0; row < 20; ++row) {
@@ -230,8 +231,8 @@ TEST(DeltaDynamics, GravityIsTheGradientOfThePotential) {
     for (int j = 0; j < 9; ++j) {
       const double g = gravity(k, at[j / 3])[j % 3];
       const Vector9 step = kStep * Vector9::Unit(j);
-      const double slope = (potential_energy(k, Configuration(Vector9(q + step))) - potential_energy(k, Configuration(Vector9(q - step)))) /
-                           (2 * kStep);
+      const double slope =
+          (potential_energy(k, Configuration(Vector9(q + step))) - potential_energy(k, Configuration(Vector9(q - step)))) / (2 * kStep);
       EXPECT_NEAR(g, slope, 1e-8 * (1 + std::abs(g)));
     }
   });

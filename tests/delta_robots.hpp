@@ -13,9 +13,9 @@ namespace tenon::delta {
 inline Robot random_robot(std::mt19937_64& random) {
   std::uniform_real_distribution<double> factor(0.6, 1.6);
   Robot robot = load_robot("delta");
-  for (double Robot::*field : {&Robot::base_radius, &Robot::proximal_length, &Robot::wrist_radius, &Robot::proximal_com,
-                               &Robot::distal_com, &Robot::proximal_mass, &Robot::distal_mass, &Robot::wrist_mass,
-                               &Robot::proximal_inertia, &Robot::distal_inertia}) {
+  for (double Robot::*field :
+       {&Robot::base_radius, &Robot::proximal_length, &Robot::wrist_radius, &Robot::proximal_com, &Robot::distal_com, &Robot::proximal_mass,
+        &Robot::distal_mass, &Robot::wrist_mass, &Robot::proximal_inertia, &Robot::distal_inertia}) {
     robot.*field *= factor(random);
   }
   robot.distal_length = robot.proximal_length * (1 + factor(random));

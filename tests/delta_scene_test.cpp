@@ -90,8 +90,9 @@ double energy_drift(const Record& r) {
 }
 
 TEST(DeltaScenes, AllAreThere) {
-  EXPECT_EQ(builtin_scenes(), (std::vector<std::string>{"delta-circle", "delta-free-fall", "delta-grasp", "delta-impact-hard",
-                                                        "delta-impact-soft", "delta-joystick", "delta-singularity", "delta-step", "delta-wall"}));
+  EXPECT_EQ(builtin_scenes(),
+            (std::vector<std::string>{"delta-circle", "delta-free-fall", "delta-grasp", "delta-impact-hard", "delta-impact-soft",
+                                      "delta-joystick", "delta-singularity", "delta-step", "delta-wall"}));
   for (const std::string& name : builtin_scenes()) EXPECT_FALSE(describe_builtin_scene(name).empty());
 }
 
@@ -103,7 +104,8 @@ TEST(DeltaScenes, DerivativesSolveTheResidualAndTheJacobianIsItsDerivative) {
     Dae::Workspace workspace = dae.make_workspace();
     DaeState s = initial_state_of(dae);
     const int nx = dae.num_states(), n = nx + dae.num_algebraics();
-    for (int i = 0; i < dae.num_guards(); ++i) s.mode.discrete[static_cast<std::size_t>(i)] = 2;  // whatever the gap: the law of a touching contact
+    for (int i = 0; i < dae.num_guards(); ++i)
+      s.mode.discrete[static_cast<std::size_t>(i)] = 2;  // whatever the gap: the law of a touching contact
     std::srand(1);
     s.x += 0.01 * Vector::Random(nx);
     s.t = 0.7;
@@ -119,8 +121,10 @@ TEST(DeltaScenes, DerivativesSolveTheResidualAndTheJacobianIsItsDerivative) {
     for (int k = 0; k < n; ++k) {
       const auto moved = [&](double step, Vector& out) {
         DaeState at = s;
-        if (k < nx) at.x[k] += step, at.xdot[k] += kAlpha * step;
-        else at.y[k - nx] += step;
+        if (k < nx)
+          at.x[k] += step, at.xdot[k] += kAlpha * step;
+        else
+          at.y[k - nx] += step;
         dae.residual(at.mode, DaePoint(at), workspace, out);
       };
       moved(kStep, plus);
@@ -174,9 +178,9 @@ TEST(DeltaScenes, TheStepIsThatOfThreePolesAtSeven) {
 
 TEST(DeltaScenes, WithRealSensorsAndADisturbanceTheWristStaysWithinThirtyMicrometres) {
   for (const char* push : {"[0.3,0,0]", "[0,-0.3,0]", "[0,0,0.3]", "[0,0,-0.3]", "[-0.1732,0.1732,0.1732]"}) {
-    const Record held = record("delta-step", {"controller.mode=sampled", "controller.rate=10000", "controller.delay=1", "controller.encoder_bits=20",
-                                        "controller.filter=500", std::string("push.constant=") + push, "simulation.rtol=1e-6",
-                                        "simulation.output_step=0.1"});
+    const Record held = record("delta-step", {"controller.mode=sampled", "controller.rate=10000", "controller.delay=1",
+                                              "controller.encoder_bits=20", "controller.filter=500", std::string("push.constant=") + push,
+                                              "simulation.rtol=1e-6", "simulation.output_step=0.1"});
     EXPECT_LE(held.largest_error(3), 30e-6) << push;
   }
 }
@@ -203,13 +207,17 @@ TEST(DeltaScenes, IdaConfirmsTheOneStepMethodAndEveryContact) {
 }
 
 TEST(DeltaScenes, TheWallIsTouchedOnceAndTheForceSettles) {
-  for (const Overrides& change : {Overrides{}, {"controller.payload=0.08"}, {"controller.payload=0.12"}, {"controller.delay=2"},
+  for (const Overrides& change : {Overrides{},
+                                  {"controller.payload=0.08"},
+                                  {"controller.payload=0.12"},
+                                  {"controller.delay=2"},
                                   {"controller.payload=0.12", "controller.delay=2"}}) {
     const Record wall = record("delta-wall", change);
     ASSERT_EQ(wall.events.size(), 1U);
     EXPECT_EQ(wall.events[0].to, 2);
     const std::vector<double>& force = wall["lambda_wall"];
-    EXPECT_NEAR(force.back(), 600 * 0.008 / (1 + 600 / 1e4), 0.5);  // two springs in a row, and the weight that the controller is wrong about
+    EXPECT_NEAR(force.back(), 600 * 0.008 / (1 + 600 / 1e4),
+                0.5);  // two springs in a row, and the weight that the controller is wrong about
     for (std::size_t k = 0; k < force.size(); ++k) {
       if (wall["t"][k] > 3.5) {
         EXPECT_NEAR(force[k], force.back(), 1e-3);
@@ -220,7 +228,10 @@ TEST(DeltaScenes, TheWallIsTouchedOnceAndTheForceSettles) {
 }
 
 TEST(DeltaScenes, TheGraspClosesWithoutSwitchingAndBothFingersShareTheForce) {
-  for (const Overrides& change : {Overrides{}, {"controller.payload=0.12"}, {"controller.payload=0.18"}, {"controller.delay=2"},
+  for (const Overrides& change : {Overrides{},
+                                  {"controller.payload=0.12"},
+                                  {"controller.payload=0.18"},
+                                  {"controller.delay=2"},
                                   {"controller.payload=0.18", "controller.delay=2"}}) {
     const Record grasp = record("delta-grasp", change);
     ASSERT_EQ(grasp.events.size(), 2U);  // each finger touches once and stays
@@ -274,16 +285,18 @@ TEST(DeltaScenes, TheGimbalsTurnTheToolToItsReference) {
 TEST(DeltaScenes, RefuseWhatMakesNoSense) {
   EXPECT_MESSAGE(load_scene("delta-cirle"), std::invalid_argument, "the nearest is 'delta-circle'");
   EXPECT_MESSAGE(load_scene("delta-circle", {"radius=0.6"}), InputError, "is out of reach, 0.");
-  EXPECT_MESSAGE(load_scene("delta-circle", {"radus=0.06"}), InputError, "unknown key 'radus' in parameters; the nearest known key is 'radius'");
+  EXPECT_MESSAGE(load_scene("delta-circle", {"radus=0.06"}), InputError,
+                 "unknown key 'radus' in parameters; the nearest known key is 'radius'");
   EXPECT_MESSAGE(load_scene("delta-circle", {"inertia=exakt"}), InputError, "inertia is 'exakt', the nearest is 'exact'");
-  EXPECT_MESSAGE(load_scene("delta-step", {"start.position=[0,0,0.7]"}), InputError, "the wrist starts out of reach, 0.0519259 m from the workspace");
+  EXPECT_MESSAGE(load_scene("delta-step", {"start.position=[0,0,0.7]"}), InputError,
+                 "the wrist starts out of reach, 0.0519259 m from the workspace");
   EXPECT_MESSAGE(load_scene("delta-step", {"robot.proximal_length=-1"}), InputError, "proximal_length is -1 m (expected more than 0)");
   EXPECT_MESSAGE(load_scene("delta-joystick", {"controller.rate=0"}), InputError, "rate is 0 (expected more than 0)");
   EXPECT_MESSAGE(load_scene("delta-wall", {"contact.1.stiffness=0"}), InputError, "stiffness is 0 N/m");
   EXPECT_MESSAGE(load_scene("delta-wall", {"push.on=object"}), InputError, "there is no object");
   EXPECT_MESSAGE(load_scene("delta-wall", {"simulation.duration=-1"}), InputError, "duration is -1 s");
-  EXPECT_MESSAGE(SceneDae(load_scene("delta-step", {"start.position=[0,0,0.648074069840786]", "start.velocity=[0,0,1]"})), std::invalid_argument,
-                 "singularity");
+  EXPECT_MESSAGE(SceneDae(load_scene("delta-step", {"start.position=[0,0,0.648074069840786]", "start.velocity=[0,0,1]"})),
+                 std::invalid_argument, "singularity");
 }
 
 }  // namespace

@@ -81,10 +81,12 @@ TEST_F(RobotVerb, RefusesWhatMakesNoSense) {
   expect_bad_input("delta --jacobians", "robot: --jacobians of which pose?");
   expect_bad_input("delta --set proximal_length=-1", "--set proximal_length=-1: proximal_length is -1 m (expected more than 0)");
   expect_bad_input("delta --set damping=[0,-1,0]", "--set damping=[0,-1,0]: damping is [0, -1, 0]");
-  expect_bad_input("delta --set proximal_lenght=1", "--set proximal_lenght=1: unknown key 'proximal_lenght'; the nearest known key is 'proximal_length'");
+  expect_bad_input("delta --set proximal_lenght=1",
+                   "--set proximal_lenght=1: unknown key 'proximal_lenght'; the nearest known key is 'proximal_length'");
   expect_bad_input("delta --set distal_length=0.2 --forward 0,0,0", "--forward (0, 0, 0): the elbows are too far apart");
   expect_bad_input("delta --inverse 0,0,0.648074069840786 --jacobians", "the pose is at a singularity of type I");
-  expect_bad_input("delta --forward 1.8234765819,1.8234765819,1.8234765819", "--forward (1.82348, 1.82348, 1.82348) is at a singularity of type II");
+  expect_bad_input("delta --forward 1.8234765819,1.8234765819,1.8234765819",
+                   "--forward (1.82348, 1.82348, 1.82348) is at a singularity of type II");
   folder_.write("r.toml", "base_radius = 0.1\nproximal_length = 0.2\n");
   expect_bad_input("r.toml", "r.toml:1:1: ");
   EXPECT_EQ(run("delta --workspace nowhere/map.csv").code, 2);

@@ -24,9 +24,12 @@ using Vector9 = Eigen::Matrix<double, 9, 1>;  // q11, q12, q13, q21, ..., q33 (r
 inline Vector3 to_world(int arm, const Vector3& v) {
   constexpr double c = -0.5, s = std::numbers::sqrt3 / 2;
   switch (arm) {
-    case 0: return v;
-    case 1: return {c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]};
-    default: return {c * v[0] + s * v[1], -s * v[0] + c * v[1], v[2]};
+    case 0:
+      return v;
+    case 1:
+      return {c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]};
+    default:
+      return {c * v[0] + s * v[1], -s * v[0] + c * v[1], v[2]};
   }
 }
 

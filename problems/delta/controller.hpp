@@ -15,12 +15,12 @@ namespace tenon::delta {
 
 struct ControllerOptions {
   LawOptions law;
-  double period = 1e-3;             // s
-  double integral_limit = 1;        // of |ki int e|, m/s^2, each axis
-  double filter_frequency = 0;      // Hz, of the angles' difference; 0: the rates are measured
-  double tactile_gain = 0;          // k_f, m/(N s); 0: no tactile loop
-  Vector3 tactile_axis{1, 0, 0};    // the direction in which sensor L pushes the reference, unit
-  double tactile_limit = 0.05;      // of |shift|, m
+  double period = 1e-3;           // s
+  double integral_limit = 1;      // of |ki int e|, m/s^2, each axis
+  double filter_frequency = 0;    // Hz, of the angles' difference; 0: the rates are measured
+  double tactile_gain = 0;        // k_f, m/(N s); 0: no tactile loop
+  Vector3 tactile_axis{1, 0, 0};  // the direction in which sensor L pushes the reference, unit
+  double tactile_limit = 0.05;    // of |shift|, m
 };
 
 /// Throws std::invalid_argument, naming the option, where one makes no sense.
@@ -33,11 +33,11 @@ struct Measurement {
 };
 
 struct Command {
-  Vector3 torque{0, 0, 0};       // N m, within the limit
-  bool saturated = false;        // a motor is at its limit
-  bool singular = false;         // too near a singularity: the torque is that which last held the weight
-  Vector3 wrist{0, 0, 0};        // z as measured
-  Vector3 error{0, 0, 0};        // r - z
+  Vector3 torque{0, 0, 0};  // N m, within the limit
+  bool saturated = false;   // a motor is at its limit
+  bool singular = false;    // too near a singularity: the torque is that which last held the weight
+  Vector3 wrist{0, 0, 0};   // z as measured
+  Vector3 error{0, 0, 0};   // r - z
 };
 
 /// What a controller remembers from tick to tick.
@@ -46,7 +46,7 @@ struct ControllerState {
   Vector3 previous_angle{0, 0, 0};  // rad
   Vector3 holding{0, 0, 0};         // the torque that last held the weight, N m
   LowPass::State filter;
-  double shift = 0;                 // of the reference by the tactile loop, m
+  double shift = 0;  // of the reference by the tactile loop, m
   bool has_previous = false;
 
   static constexpr int kSize = 17;

@@ -45,7 +45,8 @@ Matrix3 reduced_inertia(const ArmConstants& k, const Configuration& at, const Mo
     const ArmInertia m(k, at[i]);
     const Matrix3& g = motion.gamma[std::size_t(i)];
     const Vector3 g2 = g.row(1), g3 = g.row(2);
-    // row i of Gamma_i is the unit vector e_i, so that  Gamma_i' m Gamma_i = e_i (m11/2 e_i + m12 g2 + m13 g3)' + transpose + m22 g2 g2' + m33 g3 g3'
+    // row i of Gamma_i is the unit vector e_i, so that  Gamma_i' m Gamma_i = e_i (m11/2 e_i + m12 g2 + m13 g3)' + transpose + m22 g2 g2' +
+    // m33 g3 g3'
     const Vector3 row = m.m12 * g2 + m.m13 * g3;
     inertia.row(i) += row.transpose();
     inertia(i, i) += m.m11;
@@ -85,7 +86,7 @@ inline void solve_positive_definite(Matrix6& s, Vector6& x) {
 
 Acceleration acceleration(const Robot& robot, const ArmConstants& k, const Configuration& at, const Vector9& v, const Vector3& u,
                           const Vector3& f) {
-  // tip forces F_1 = lambda_1 + lambda_2, F_2 = -lambda_1, F_3 = -lambda_2 move the tips by  a_i + W_i F_i,  W_i = R_i P m^-1 P' R_i'   (5.6)
+  // tip forces F_1 = lambda_1 + lambda_2, F_2 = -lambda_1, F_3 = -lambda_2 move the tips by  a_i + W_i F_i,  W_i = R_i P m^-1 P' R_i' (5.6)
   const double alpha1 = 2 * robot.stabilisation, alpha0 = robot.stabilisation * robot.stabilisation;
   std::array<Matrix3, kArms> p, w;
   std::array<Vector3, kArms> free, tip;  // angles' acceleration without closure; the tip's, with what stabilises it

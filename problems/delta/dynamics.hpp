@@ -14,8 +14,8 @@ namespace tenon::delta {
 
 /// The robot's numbers as the equations of motion use them.
 struct ArmConstants {
-  double a, b, i, k;       // (5.1)
-  double moment;           // lc1 M1 + l1 (M2 + M3), kg m
+  double a, b, i, k;  // (5.1)
+  double moment;      // lc1 M1 + l1 (M2 + M3), kg m
   double gravity;
   Vector3 damping;
 
@@ -105,7 +105,8 @@ struct Acceleration {
   Vector6 lambda;  // closure forces, N
 };
 
-/// [M, -H'; H, 0] [v'; lambda] = [B u + J_v' f - C - D - G; -Hdot v - alpha1 H v - alpha0 h],  alpha1 = 2p, alpha0 = p^2, p `stabilisation`.
+/// [M, -H'; H, 0] [v'; lambda] = [B u + J_v' f - C - D - G; -Hdot v - alpha1 H v - alpha0 h],  alpha1 = 2p, alpha0 = p^2, p
+/// `stabilisation`.
 ///
 /// u: motor torques (N m), f: force on the wrist in world axes (N). Passes through type I and II; not finite where sin q_i2 = 0.
 Acceleration acceleration(const Robot& robot, const ArmConstants& k, const Configuration& at, const Vector9& v, const Vector3& u,

@@ -26,8 +26,8 @@ Inverse inverse_kinematics(const Robot& robot, const Vector3& z);
 
 enum class ForwardStatus {
   solved,
-  unreachable,  // no wrist position joins the three elbows
-  singular,     // type II: the wrist lies in the plane of the elbows, or the elbows on a line
+  unreachable,      // no wrist position joins the three elbows
+  singular,         // type II: the wrist lies in the plane of the elbows, or the elbows on a line
   iteration_limit,  // Newton's method only
 };
 
@@ -41,7 +41,8 @@ struct Forward {
 /// From the motor angles y (rad) by intersection of three spheres of radius l2 about the elbows; of its two points the one with larger z.
 Forward forward_kinematics(const Robot& robot, const Vector3& y);
 
-/// The same by Newton's method on h = 0, from the other six angles of `guess`, whichever side of type II it lies on; q comes back in `guess`.
+/// The same by Newton's method on h = 0, from the other six angles of `guess`, whichever side of type II it lies on; q comes back in
+/// `guess`.
 Forward forward_newton(const Robot& robot, const Vector3& y, Vector9& guess);
 
 /// The nine angles of a configuration: q1 and q3 in (-pi, pi], q2 in [0, pi].
@@ -56,11 +57,11 @@ using Matrix69 = Eigen::Matrix<double, 6, 9>;
 using Matrix39 = Eigen::Matrix<double, 3, 9>;
 using Matrix93 = Eigen::Matrix<double, 9, 3>;
 
-Vector6 closure(const Robot& robot, const Configuration& at);                           // h, m
-Matrix69 closure_jacobian(const Robot& robot, const Configuration& at);                 // H = dh/dq
-Vector6 closure_bias(const Robot& robot, const Configuration& at, const Vector9& v);    // Hdot v
-Matrix39 simulation_jacobian(const Robot& robot, const Configuration& at);              // J_v = (1/3) [P1, R2 P2, R3 P3]
-Vector3 wrist_position(const Robot& robot, const Configuration& at);                    // mean of R_i psi_i, m
+Vector6 closure(const Robot& robot, const Configuration& at);                         // h, m
+Matrix69 closure_jacobian(const Robot& robot, const Configuration& at);               // H = dh/dq
+Vector6 closure_bias(const Robot& robot, const Configuration& at, const Vector9& v);  // Hdot v
+Matrix39 simulation_jacobian(const Robot& robot, const Configuration& at);            // J_v = (1/3) [P1, R2 P2, R3 P3]
+Vector3 wrist_position(const Robot& robot, const Configuration& at);                  // mean of R_i psi_i, m
 
 // --- motion ---------------------------------------------------------------------------------------------------------------------------
 
@@ -75,11 +76,11 @@ inline constexpr double kSingular = 1e-9;  // below this a measure counts as 0
 
 /// The motors' motion and the wrist's, for one configuration.
 struct Motion {
-  Matrix3 a;               // A, rows (R_i d_i)'
-  Matrix3 a_inverse;       // of no meaning where det_a is 0
+  Matrix3 a;          // A, rows (R_i d_i)'
+  Matrix3 a_inverse;  // of no meaning where det_a is 0
   double det_a = 0;
-  Vector3 b{0, 0, 0};      // m
-  Matrix3 jacobian;        // J_c = A^-1 diag(b), m
+  Vector3 b{0, 0, 0};                // m
+  Matrix3 jacobian;                  // J_c = A^-1 diag(b), m
   std::array<Matrix3, kArms> gamma;  // rows 3i .. 3i+2 of Gamma
 
   Motion(const Robot& robot, const Configuration& at);

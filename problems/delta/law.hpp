@@ -45,9 +45,9 @@ struct LawOptions {
 
 /// Where the robot is, as a law needs it.
 struct Sensed {
-  bool ok = false;         // false: at or beyond a singularity, no torque can be worked out
-  Vector3 y_rate;          // of the motors, rad/s
-  Vector3 wrist, velocity; // z, z'
+  bool ok = false;          // false: at or beyond a singularity, no torque can be worked out
+  Vector3 y_rate;           // of the motors, rad/s
+  Vector3 wrist, velocity;  // z, z'
   Configuration at;
   Motion motion;
 

@@ -22,7 +22,8 @@ Vector3 slope_at(const std::vector<ReferencePath::Knot>& knots, std::size_t k) {
 Reference between_knots(const std::vector<ReferencePath::Knot>& knots, double t) {
   if (t <= knots.front().t) return {knots.front().position, Vector3::Zero(), Vector3::Zero()};
   if (t >= knots.back().t) return {knots.back().position, Vector3::Zero(), Vector3::Zero()};
-  const auto later = std::upper_bound(knots.begin(), knots.end(), t, [](double time, const ReferencePath::Knot& knot) { return time < knot.t; });
+  const auto later =
+      std::upper_bound(knots.begin(), knots.end(), t, [](double time, const ReferencePath::Knot& knot) { return time < knot.t; });
   const std::size_t k = static_cast<std::size_t>(later - knots.begin()) - 1;
   // r = p0 + h m0 s + (3 d - h (2 m0 + m1)) s^2 + (h (m0 + m1) - 2 d) s^3,   s = (t - t0)/h,   d = p1 - p0
   const double h = knots[k + 1].t - knots[k].t, s = (t - knots[k].t) / h;

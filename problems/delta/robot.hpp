@@ -14,23 +14,23 @@ namespace tenon::delta {
 
 struct Robot {
   std::string name;
-  double base_radius = 0;          // l0, m: from the axis to a shoulder
-  double proximal_length = 0;      // l1, m
-  double distal_length = 0;        // l2, m
-  double wrist_radius = 0;         // l3, m: from the wrist's centre to a joint
-  double proximal_com = 0;         // lc1, m from the shoulder
-  double distal_com = 0;           // lc2, m from the elbow
-  double proximal_mass = 0;        // M1, kg
-  double distal_mass = 0;          // M2, kg, both rods
-  double wrist_mass = 0;           // kg, whole
-  double payload = 0;              // kg, whole, at the wrist's centre
-  double proximal_inertia = 0;     // J1, kg m^2 about its centre of mass, the motor's rotor in it
-  double distal_inertia = 0;       // J2, kg m^2 transverse, about the centre of mass, both rods
-  Eigen::Vector3d damping{0, 0, 0};  // of q1, q2, q3 of every arm, N m s
-  double gravity = 9.81;           // m/s^2
+  double base_radius = 0;                                         // l0, m: from the axis to a shoulder
+  double proximal_length = 0;                                     // l1, m
+  double distal_length = 0;                                       // l2, m
+  double wrist_radius = 0;                                        // l3, m: from the wrist's centre to a joint
+  double proximal_com = 0;                                        // lc1, m from the shoulder
+  double distal_com = 0;                                          // lc2, m from the elbow
+  double proximal_mass = 0;                                       // M1, kg
+  double distal_mass = 0;                                         // M2, kg, both rods
+  double wrist_mass = 0;                                          // kg, whole
+  double payload = 0;                                             // kg, whole, at the wrist's centre
+  double proximal_inertia = 0;                                    // J1, kg m^2 about its centre of mass, the motor's rotor in it
+  double distal_inertia = 0;                                      // J2, kg m^2 transverse, about the centre of mass, both rods
+  Eigen::Vector3d damping{0, 0, 0};                               // of q1, q2, q3 of every arm, N m s
+  double gravity = 9.81;                                          // m/s^2
   double torque_limit = std::numeric_limits<double>::infinity();  // N m, each motor
-  double stabilisation = 5;        // p, 1/s: closure errors of the index-1 form decay as exp(-p t)
-  Eigen::Vector3d gimbal_inertia{0, 0, 0};  // of the spherical wrist's yaw, pitch and roll, kg m^2; 0: it has none
+  double stabilisation = 5;                                       // p, 1/s: closure errors of the index-1 form decay as exp(-p t)
+  Eigen::Vector3d gimbal_inertia{0, 0, 0};                        // of the spherical wrist's yaw, pitch and roll, kg m^2; 0: it has none
   double gimbal_torque_limit = std::numeric_limits<double>::infinity();  // N m
 
   double radial_offset() const { return base_radius - wrist_radius; }  // c = l0 - l3

@@ -16,7 +16,6 @@ Robot with_payload(Robot robot, double payload) {
   return robot;
 }
 
-
 }  // namespace
 
 SceneDae::SceneDae(Scene scene)
@@ -59,7 +58,8 @@ void SceneDae::initial_state(DaeState& state) const {
   if (is_sampled()) state.mode.held = Vector::Zero(3 + ControllerState::kSize + 1 + 3 * scene_.delay);
 }
 
-SceneDae::Touch SceneDae::touch(int i, const DaeMode& mode, double t, ConstVectorRef x, const Vector3& wrist, const Vector3& velocity) const {
+SceneDae::Touch SceneDae::touch(int i, const DaeMode& mode, double t, ConstVectorRef x, const Vector3& wrist,
+                                const Vector3& velocity) const {
   const Contact& c = contact(i);
   Touch out;
   out.gap = c.normal.dot(wrist) + c.offset;

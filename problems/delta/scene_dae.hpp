@@ -6,8 +6,8 @@
 //     tau = the law's torque, or what the sampled controller holds, + u
 //     contact force = -k gap - d gap' while touching, 0 while free
 //
-// x = (q, v, [integral], [object], [tool]), y = (lambda, tau, contact forces), u = further motor torques. The controller's memory is held by
-// the mode and changes with its clock.
+// x = (q, v, [integral], [object], [tool]), y = (lambda, tau, contact forces), u = further motor torques. The controller's memory is held
+// by the mode and changes with its clock.
 #pragma once
 
 #include "tenon/core/dae.hpp"
@@ -29,7 +29,8 @@ class SceneDae final : public Dae {
   Workspace make_workspace() const override;
 
   void residual(const DaeMode& mode, const DaePoint& at, Workspace& workspace, VectorRef F) const override;
-  /// Exact but for the columns of x, which are central differences of the arms' terms and of the continuous law: what Newton's method needs.
+  /// Exact but for the columns of x, which are central differences of the arms' terms and of the continuous law: what Newton's method
+  /// needs.
   void jacobian(const DaeMode& mode, const DaePoint& at, double alpha, Workspace& workspace, std::span<double> values) const override;
   bool has_derivatives() const override { return true; }
   void derivatives(const DaeMode& mode, double t, ConstVectorRef x, ConstVectorRef u, Workspace& workspace, VectorRef xdot,

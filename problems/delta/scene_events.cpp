@@ -63,8 +63,15 @@ bool SceneDae::switch_contact(DaeState& state, int i, bool has_fired, const Even
   const int from = mode;
   mode = from == kFree ? kTouching : kFree;
   const double total = energy(state);
-  log({.t = state.t, .contact = contact(i).name, .from = from, .to = mode, .gap = now.gap, .gap_rate_before = now.rate,
-       .gap_rate_after = now.rate, .energy_before = total, .energy_after = total});
+  log({.t = state.t,
+       .contact = contact(i).name,
+       .from = from,
+       .to = mode,
+       .gap = now.gap,
+       .gap_rate_before = now.rate,
+       .gap_rate_after = now.rate,
+       .energy_before = total,
+       .energy_after = total});
   return true;
 }
 

@@ -25,11 +25,30 @@ namespace {
 using toml_file::Table;
 using Words = std::vector<std::string>;
 
-const Words kRootKeys{"name", "robot", "start", "reference", "controller", "contact", "gripper", "object", "tool", "push", "simulation", "parameters"};
+const Words kRootKeys{"name",    "robot",  "start", "reference", "controller", "contact",
+                      "gripper", "object", "tool",  "push",      "simulation", "parameters"};
 const Words kReferenceKeys{"kind", "centre", "radius", "frequency", "knot"};
-const Words kControllerKeys{"mode",      "form",   "pole",  "kp",           "kd",     "ki",      "feed_forward", "coriolis",      "damping",
-                            "inertia",   "rate",   "delay", "encoder_bits", "filter", "payload", "stiffness",    "impedance_damping",
-                            "integral_limit", "tactile_gain", "tactile_limit", "tactile_axis"};
+const Words kControllerKeys{"mode",
+                            "form",
+                            "pole",
+                            "kp",
+                            "kd",
+                            "ki",
+                            "feed_forward",
+                            "coriolis",
+                            "damping",
+                            "inertia",
+                            "rate",
+                            "delay",
+                            "encoder_bits",
+                            "filter",
+                            "payload",
+                            "stiffness",
+                            "impedance_damping",
+                            "integral_limit",
+                            "tactile_gain",
+                            "tactile_limit",
+                            "tactile_axis"};
 
 /// A section whose keys may stand in [parameters] instead, which then count.
 class Section {
@@ -164,8 +183,10 @@ Contact read_contact(const Table& table) {
   contact.offset = table.number("offset");
   contact.stiffness = table.number("stiffness", contact.stiffness);
   contact.damping = table.number("damping", contact.damping);
-  if (!(contact.stiffness > 0)) throw InputError(table.position("stiffness"), fmt::format("stiffness is {} N/m", contact.stiffness), "more than 0");
-  if (!(contact.damping >= 0)) throw InputError(table.position("damping"), fmt::format("damping is {} N s/m", contact.damping), "0 or more");
+  if (!(contact.stiffness > 0))
+    throw InputError(table.position("stiffness"), fmt::format("stiffness is {} N/m", contact.stiffness), "more than 0");
+  if (!(contact.damping >= 0))
+    throw InputError(table.position("damping"), fmt::format("damping is {} N s/m", contact.damping), "0 or more");
   contact.is_finger = table.flag("finger", false);
   const std::string sensor = table.text("sensor", "");
   if (!sensor.empty() && sensor != "left" && sensor != "right") {
@@ -187,13 +208,20 @@ void read_surroundings(const Table& root, Scene& scene) {
     if (!(scene.object.mass > 0)) throw InputError(table->position("mass"), fmt::format("mass is {} kg", scene.object.mass), "more than 0");
   }
   if (const auto table = root.table("push", {"constant", "amplitude", "from", "to", "duration", "on"})) {
-    scene.push = {table->vector3("constant", Vector3::Zero()), table->vector3("amplitude", Vector3::Zero()), table->number("from", 1),
-                  table->number("to", table->number("from", 1)), table->number("duration", 1), table->text("on", "wrist") == "object"};
-    if (scene.push.on_object && scene.object.mass == 0) throw InputError(table->position("on"), "there is no object", "an [object], or on = \"wrist\"");
-    if (!(scene.push.from > 0 && scene.push.to > 0)) throw InputError(table->position("from"), "a frequency is not positive", "more than 0 Hz");
+    scene.push = {table->vector3("constant", Vector3::Zero()),
+                  table->vector3("amplitude", Vector3::Zero()),
+                  table->number("from", 1),
+                  table->number("to", table->number("from", 1)),
+                  table->number("duration", 1),
+                  table->text("on", "wrist") == "object"};
+    if (scene.push.on_object && scene.object.mass == 0)
+      throw InputError(table->position("on"), "there is no object", "an [object], or on = \"wrist\"");
+    if (!(scene.push.from > 0 && scene.push.to > 0))
+      throw InputError(table->position("from"), "a frequency is not positive", "more than 0 Hz");
   }
   if (const auto table = root.table("tool", {"angle", "reference"})) {
-    if (!(scene.robot.gimbal_inertia.array() > 0).all()) throw InputError(table->position(), "the robot has no gimbals", "gimbal_inertia above 0");
+    if (!(scene.robot.gimbal_inertia.array() > 0).all())
+      throw InputError(table->position(), "the robot has no gimbals", "gimbal_inertia above 0");
     scene.has_tool = true;
     scene.tool_angle = table->vector3("angle", Vector3::Zero());
     scene.tool_reference = table->vector3("reference", Vector3::Zero());
@@ -208,9 +236,10 @@ void read_start(const Table& root, Scene& scene) {
     scene.position = table->vector3("position", scene.position);
     scene.velocity = table->vector3("velocity", Vector3::Zero());
     if (!inverse_kinematics(scene.robot, scene.position).ok()) {
-      throw InputError(table->position("position"),
-                       fmt::format("the wrist starts out of reach, {:.6g} m from the workspace", distance_to_workspace(scene.robot, scene.position)),
-                       "a point that all arms reach");
+      throw InputError(
+          table->position("position"),
+          fmt::format("the wrist starts out of reach, {:.6g} m from the workspace", distance_to_workspace(scene.robot, scene.position)),
+          "a point that all arms reach");
     }
   }
 }
@@ -242,9 +271,11 @@ Scene parse_scene(const std::string& text, const std::string& file, const std::v
     scene.duration = table->number("duration", scene.duration);
     scene.rtol = table->number("rtol", scene.rtol);
     scene.output_step = table->number("output_step", scene.output_step);
-    if (!(scene.duration > 0)) throw InputError(table->position("duration"), fmt::format("duration is {} s", scene.duration), "more than 0");
+    if (!(scene.duration > 0))
+      throw InputError(table->position("duration"), fmt::format("duration is {} s", scene.duration), "more than 0");
     if (!(scene.rtol > 0)) throw InputError(table->position("rtol"), fmt::format("rtol is {}", scene.rtol), "more than 0");
-    if (!(scene.output_step > 0)) throw InputError(table->position("output_step"), fmt::format("output_step is {} s", scene.output_step), "more than 0");
+    if (!(scene.output_step > 0))
+      throw InputError(table->position("output_step"), fmt::format("output_step is {} s", scene.output_step), "more than 0");
   }
   return scene;
 }

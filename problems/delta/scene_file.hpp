@@ -3,7 +3,8 @@
 //     [robot]       model = a built-in robot or a file, and any key of its file to override
 //     [start]       position, velocity of the wrist (m, m/s); without it the run starts on the reference, moving as that does
 //     [reference]   kind = "hold" | "circle" | "knots", centre, radius, frequency; [[reference.knot]] t, position
-//     [controller]  mode = "none" | "continuous" | "sampled", form = "linearising" | "impedance", pole or kp, kd, ki; feed_forward, coriolis,
+//     [controller]  mode = "none" | "continuous" | "sampled", form = "linearising" | "impedance", pole or kp, kd, ki; feed_forward,
+//     coriolis,
 //                   damping (as coriolis, unless said), inertia = "exact" | "projected-left", stiffness, impedance_damping, integral_limit,
 //                   rate (Hz), delay (ticks), encoder_bits, filter (Hz), payload, tactile_gain, tactile_limit, tactile_axis
 //     [[contact]]   name, normal, offset, stiffness, damping, finger, sensor = "left" | "right"
@@ -27,8 +28,8 @@ std::string describe_builtin_scene(const std::string& name);
 /// Whether this scene has a delta robot: one of those names, or a file with a [robot].
 bool has_delta_robot(const std::string& name_or_path);
 
-/// A built-in scene, or one from a file, with overrides `key.path=value`, or NAME=VALUE for one of its [parameters]. Throws InputError, with
-/// the place of what is wrong; std::invalid_argument for a name that is neither, the nearest named.
+/// A built-in scene, or one from a file, with overrides `key.path=value`, or NAME=VALUE for one of its [parameters]. Throws InputError,
+/// with the place of what is wrong; std::invalid_argument for a name that is neither, the nearest named.
 Scene load_scene(const std::string& name_or_path, const std::vector<std::string>& overrides = {});
 
 /// The same from text; `file` is the name used in messages.

@@ -41,14 +41,15 @@ void SceneDae::jacobian(const DaeMode& mode, const DaePoint& at, double alpha, W
   const auto terms = [&](const Configuration& where, const Vector9& rates, int i) {
     const Vector3 rate = rates.segment<3>(3 * i);
     const ArmResidual arm = arm_residual(robot, constants_, where[i], rate, at.xdot.segment<3>(9 + 3 * i), force[std::size_t(i)]);
-    return ArmTerms{arm.balance, to_world(i, arm.tip), to_world(i, where[i].wrist(robot)),
-                    to_world(i, where[i].jacobian(robot) * rate)};
+    return ArmTerms{arm.balance, to_world(i, arm.tip), to_world(i, where[i].wrist(robot)), to_world(i, where[i].jacobian(robot) * rate)};
   };
   /// The column of an angle or a rate of arm i, `change` over a step of unit length.
   const auto write = [&](int column, int i, const ArmTerms& change) {
     J.block<3, 1>(9 + 3 * i, column) += change.balance;
-    if (i == 0) J.block<3, 1>(h, column) = J.block<3, 1>(h + 3, column) = change.tip;
-    else J.block<3, 1>(h + 3 * (i - 1), column) = -change.tip;
+    if (i == 0)
+      J.block<3, 1>(h, column) = J.block<3, 1>(h + 3, column) = change.tip;
+    else
+      J.block<3, 1>(h + 3 * (i - 1), column) = -change.tip;
     if (integral_ >= 0) J.block<3, 1>(integral_, column) = change.wrist / 3;
     for (int c = 0; c < num_contacts(); ++c) {
       if (mode.discrete[static_cast<std::size_t>(c)] == 0) continue;
@@ -69,7 +70,8 @@ void SceneDae::jacobian(const DaeMode& mode, const DaePoint& at, double alpha, W
     }
     for (int i = 0; i < kArms; ++i) {
       // quadratic in the rates: the central difference is exact at any step
-      write(9 + 3 * i + k, i, scaled(terms(configuration, v + Vector9::Unit(3 * i + k), i) - terms(configuration, v - Vector9::Unit(3 * i + k), i), 0.5));
+      write(9 + 3 * i + k, i,
+            scaled(terms(configuration, v + Vector9::Unit(3 * i + k), i) - terms(configuration, v - Vector9::Unit(3 * i + k), i), 0.5));
       J(9 + 3 * i + k, 9 + 3 * i + k) -= alpha;
     }
   }

@@ -18,9 +18,9 @@ std::complex<double> at_frequency(double frequency) {
 }  // namespace
 
 struct TactileLoop::Parts {
-  std::complex<double> control;   // C e^(-T s)
-  std::complex<double> contact;   // K_c
-  std::complex<double> object;    // m_o s^2 + d_o s + k_o
+  std::complex<double> control;  // C e^(-T s)
+  std::complex<double> contact;  // K_c
+  std::complex<double> object;   // m_o s^2 + d_o s + k_o
 };
 
 TactileLoop::TactileLoop(const Scene& scene)

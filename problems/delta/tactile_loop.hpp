@@ -14,10 +14,10 @@
 namespace tenon::delta {
 
 struct LoopMargins {
-  double crossover = 0;     // Hz, the highest frequency at which the loop's gain is 1; 0: it is below 1 throughout
-  double phase = 0;         // deg, the least at any crossover
-  double delay = 0;         // s, the least further delay that makes it unstable
-  double gain = 0;          // the factor that makes it unstable; 0: none within the band looked at
+  double crossover = 0;  // Hz, the highest frequency at which the loop's gain is 1; 0: it is below 1 throughout
+  double phase = 0;      // deg, the least at any crossover
+  double delay = 0;      // s, the least further delay that makes it unstable
+  double gain = 0;       // the factor that makes it unstable; 0: none within the band looked at
 };
 
 class TactileLoop {

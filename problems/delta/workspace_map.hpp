@@ -8,11 +8,11 @@
 namespace tenon::delta {
 
 struct WorkspacePoint {
-  Vector3 wrist;                 // z, m
+  Vector3 wrist;  // z, m
   Singularity singularity;
-  double speed_least = 0;        // least and greatest singular value of J_c: wrist speed per motor speed, m
+  double speed_least = 0;  // least and greatest singular value of J_c: wrist speed per motor speed, m
   double speed_greatest = 0;
-  double gravity_torque = 0;     // the largest of the three, N m; 0 at type II, where there is none
+  double gravity_torque = 0;  // the largest of the three, N m; 0 at type II, where there is none
 };
 
 /// The farthest the wrist comes from the middle of the base, m.
