@@ -143,6 +143,15 @@ TEST(DeltaScenes, FreeFallKeepsItsEnergyAndItsArmsClosed) {
   }
 }
 
+TEST(DeltaScenes, TheWorkOfEveryForceIsAccountedFor) {
+  for (const std::string& name : builtin_scenes()) {
+    const Record all = record(name, {"push.constant=[0.1,0.2,0.1]", "tool.reference=[1,0,0]", "simulation.rtol=1e-9"});
+    double largest = 0;
+    for (const double error : all["energy_error"]) largest = std::max(largest, std::abs(error));
+    EXPECT_LE(largest, 1e-7) << name;
+  }
+}
+
 TEST(DeltaScenes, TheFallGoesThroughTypeTwo) {
   for (const char* integrator : {"dop853", "ida"}) {
     const Record fall = record("delta-singularity", {}, integrator);

@@ -56,18 +56,20 @@ void SceneDae::initial_state(DaeState& state) const {
   if (tool_ >= 0) state.x.segment<3>(tool_) = scene_.tool_angle;
   state.mode.discrete.assign(static_cast<std::size_t>(num_contacts() + 1), 0);  // contacts, then the ticks so far
   if (is_sampled()) state.mode.held = Vector::Zero(3 + ControllerState::kSize + 1 + 3 * scene_.delay);
+  state.x[work_] = energy(state);
 }
 
 SceneDae::Touch SceneDae::touch(int i, const DaeMode& mode, double t, ConstVectorRef x, const Vector3& wrist,
                                 const Vector3& velocity) const {
   const Contact& c = contact(i);
-  Touch out;
+  Touch out{};
   out.gap = c.normal.dot(wrist) + c.offset;
   out.rate = c.normal.dot(velocity);
   if (c.is_finger) {
     const Gripper& g = scene_.gripper;
     out.gap += g.opening(t);
-    if (t > g.begin && t < g.end) out.rate += (g.to - g.from) / (g.end - g.begin);
+    if (t > g.begin && t < g.end) out.opening_rate = (g.to - g.from) / (g.end - g.begin);
+    out.rate += out.opening_rate;
     if (object_ >= 0) {
       const double along = c.normal.dot(controller_options_.tactile_axis);
       out.gap -= along * x[object_];
@@ -97,11 +99,34 @@ Vector3 SceneDae::integral_rate(double t, ConstVectorRef x, const Vector3& wrist
   return rate;
 }
 
-Vector3 SceneDae::tool_acceleration(ConstVectorRef x) const {
+Vector3 SceneDae::tool_torque(ConstVectorRef x) const {
   const Vector3 angle = x.segment<3>(tool_), rate = x.segment<3>(tool_ + 3);
   const Vector3 w = kToolPole * kToolPole * (scene_.tool_reference - angle) - 2 * kToolPole * rate;
   const double most = scene_.robot.gimbal_torque_limit;
-  return gimbals_.acceleration(angle, rate, gimbals_.linearising_torque(angle, rate, w).cwiseMax(-most).cwiseMin(most));
+  return gimbals_.linearising_torque(angle, rate, w).cwiseMax(-most).cwiseMin(most);
+}
+
+Vector3 SceneDae::tool_acceleration(ConstVectorRef x) const {
+  return gimbals_.acceleration(x.segment<3>(tool_), x.segment<3>(tool_ + 3), tool_torque(x));
+}
+
+/// Of all that changes the energy: motors, friction, pushes, the contacts' dampers, the gripper.
+double SceneDae::power(const DaeMode& mode, const DaePoint& at, const Vector3& wrist, const Vector3& velocity) const {
+  double sum = 0;
+  for (int i = 0; i < kArms; ++i) {
+    const Vector3 v = at.x.segment<3>(9 + 3 * i);
+    sum += at.y[kTorque + i] * v[0] - constants_.damping.dot(v.cwiseProduct(v));
+  }
+  const Vector3 push = scene_.push.at(at.t);
+  sum += scene_.push.on_object ? push[0] * at.x[object_ + 1] : push.dot(velocity);
+  for (int i = 0; i < num_contacts(); ++i) {
+    if (mode.discrete[static_cast<std::size_t>(i)] == 0) continue;
+    const Touch now = touch(i, mode, at.t, at.x, wrist, velocity);
+    sum -= contact(i).damping * now.rate * now.rate + at.y[kContact + i] * now.opening_rate;
+  }
+  if (object_ >= 0) sum -= scene_.object.damping * at.x[object_ + 1] * at.x[object_ + 1];
+  if (tool_ >= 0) sum += tool_torque(at.x).dot(at.x.segment<3>(tool_ + 3));
+  return sum;
 }
 
 /// All but the contacts'.
@@ -145,6 +170,7 @@ void SceneDae::residual(const DaeMode& mode, const DaePoint& at, Workspace&, Vec
     if (contact(i).is_finger) on_object -= y * contact(i).normal.dot(controller_options_.tactile_axis);
     F[num_states_ + kContact + i] = y - touch(i, mode, at.t, at.x, wrist, velocity).force;
   }
+  F[work_] = at.xdot[work_] - power(mode, at, wrist, velocity);
   if (integral_ >= 0) F.segment<3>(integral_) = at.xdot.segment<3>(integral_) - integral_rate(at.t, at.x, wrist);
   if (object_ >= 0) {
     F[object_] = at.xdot[object_] - at.x[object_ + 1];
@@ -163,14 +189,15 @@ void SceneDae::derivatives(const DaeMode& mode, double t, ConstVectorRef x, Cons
   const Configuration configuration(q);
   Vector3 force = scene_.push.on_object ? Vector3(Vector3::Zero()) : scene_.push.at(t);
   double on_object = 0;
-  if (num_contacts() > 0) {
-    const Vector3 wrist = wrist_position(robot, configuration);
-    const Vector3 velocity = simulation_jacobian(robot, configuration) * v;
-    for (int i = 0; i < num_contacts(); ++i) {
-      const double y_i = y[kContact + i] = touch(i, mode, t, x, wrist, velocity).force;
-      force += y_i * contact(i).normal;
-      if (contact(i).is_finger) on_object -= y_i * contact(i).normal.dot(controller_options_.tactile_axis);
-    }
+  Vector3 wrist = Vector3::Zero(), velocity = Vector3::Zero();
+  if (num_contacts() > 0 || integral_ >= 0 || !force.isZero()) {
+    wrist = wrist_position(robot, configuration);
+    velocity = simulation_jacobian(robot, configuration) * v;
+  }
+  for (int i = 0; i < num_contacts(); ++i) {
+    const double y_i = y[kContact + i] = touch(i, mode, t, x, wrist, velocity).force;
+    force += y_i * contact(i).normal;
+    if (contact(i).is_finger) on_object -= y_i * contact(i).normal.dot(controller_options_.tactile_axis);
   }
   const Vector3 motors = u + torque(mode, t, x, configuration);
   const Acceleration acceleration = delta::acceleration(robot, constants_, configuration, v, motors, force);
@@ -178,7 +205,8 @@ void SceneDae::derivatives(const DaeMode& mode, double t, ConstVectorRef x, Cons
   xdot.segment<9>(9) = acceleration.v_rate;
   y.head<6>() = acceleration.lambda;
   y.segment<3>(kTorque) = motors;
-  if (integral_ >= 0) xdot.segment<3>(integral_) = integral_rate(t, x, wrist_position(robot, configuration));
+  xdot[work_] = power(mode, DaePoint(t, xdot, x, y, u), wrist, velocity);
+  if (integral_ >= 0) xdot.segment<3>(integral_) = integral_rate(t, x, wrist);
   if (object_ >= 0) {
     xdot[object_] = x[object_ + 1];
     xdot[object_ + 1] = (object_force(t, x) + on_object) / scene_.object.mass;

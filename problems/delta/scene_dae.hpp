@@ -6,8 +6,8 @@
 //     tau = the law's torque, or what the sampled controller holds, + u
 //     contact force = -k gap - d gap' while touching, 0 while free
 //
-// x = (q, v, [integral], [object], [tool]), y = (lambda, tau, contact forces), u = further motor torques. The controller's memory is held
-// by the mode and changes with its clock.
+// x = (q, v, work, [integral], [object], [tool]), y = (lambda, tau, contact forces), u = further motor torques. The controller's memory is
+// held by the mode and changes with its clock.
 #pragma once
 
 #include "tenon/core/dae.hpp"
@@ -51,7 +51,8 @@ class SceneDae final : public Dae {
   std::string guard_name(int i) const override { return contact(i).name; }
 
   const Scene& scene() const { return scene_; }
-  /// Kinetic and potential energy of robot, tool and object, and that of the springs, J.
+  /// Kinetic and potential energy of robot, tool and object, and that of the springs, J. What it is beyond the state `work` is the audit's
+  /// error.
   double energy(const DaeState& state) const;
 
  private:
@@ -60,6 +61,7 @@ class SceneDae final : public Dae {
 
   struct Touch {
     double gap, rate, force;
+    double opening_rate;  // the gripper's part of the rate
   };
   struct Memory;
 
@@ -73,8 +75,10 @@ class SceneDae final : public Dae {
   Touch touch(int i, const DaeMode& mode, double t, ConstVectorRef x, const Vector3& wrist, const Vector3& velocity) const;
   Vector3 torque(const DaeMode& mode, double t, ConstVectorRef x, const Configuration& at) const;
   Vector3 integral_rate(double t, ConstVectorRef x, const Vector3& wrist) const;
+  Vector3 tool_torque(ConstVectorRef x) const;
   Vector3 tool_acceleration(ConstVectorRef x) const;
   double object_force(double t, ConstVectorRef x) const;
+  double power(const DaeMode& mode, const DaePoint& at, const Vector3& wrist, const Vector3& velocity) const;
   Measurement measure(const DaeState& state) const;
   void tick(DaeState& state, Controller& controller) const;
   bool switch_contact(DaeState& state, int i, bool has_fired, const EventLog& log) const;
@@ -86,7 +90,7 @@ class SceneDae final : public Dae {
   Law law_;
   WristGimbals gimbals_;
   Vector9 q_, v_;
-  int num_states_ = 18, integral_ = -1, object_ = -1, tool_ = -1;
+  int num_states_ = 19, work_ = 18, integral_ = -1, object_ = -1, tool_ = -1;
 };
 
 }  // namespace tenon::delta

@@ -61,8 +61,10 @@ bool SceneDae::switch_contact(DaeState& state, int i, bool has_fired, const Even
   const bool changes = has_fired || (mode == kFree ? now.gap < 0 && would_push > 0 : now.force < 0);
   if (!changes) return false;
   const int from = mode;
+  const double before = energy(state);
   mode = from == kFree ? kTouching : kFree;
-  const double total = energy(state);
+  const double after = energy(state);
+  state.x[work_] += after - before;  // what a spring that lets go early still held
   log({.t = state.t,
        .contact = contact(i).name,
        .from = from,
@@ -70,8 +72,8 @@ bool SceneDae::switch_contact(DaeState& state, int i, bool has_fired, const Even
        .gap = now.gap,
        .gap_rate_before = now.rate,
        .gap_rate_after = now.rate,
-       .energy_before = total,
-       .energy_after = total});
+       .energy_before = before,
+       .energy_after = after});
   return true;
 }
 
@@ -141,7 +143,7 @@ double SceneDae::energy(const DaeState& state) const {
 // --- the record ------------------------------------------------------------------------------------------------------------------------
 
 int SceneDae::num_outputs() const {
-  return 6 + 2 * num_contacts() + (is_sampled() ? 2 : 0) + 4;
+  return 6 + 2 * num_contacts() + (is_sampled() ? 2 : 0) + 5;
 }
 
 void SceneDae::outputs(const DaeState& state, Workspace&, VectorRef values) const {
@@ -161,7 +163,9 @@ void SceneDae::outputs(const DaeState& state, Workspace&, VectorRef values) cons
     add(shift);
     add(state.mode.held[kHeldSaturated]);
   }
-  add(energy(state));
+  const double total = energy(state);
+  add(total);
+  add(total - state.x[work_]);
   add(closure(scene_.robot, configuration).lpNorm<Eigen::Infinity>());
   add(motion.b.cwiseAbs().minCoeff() / scene_.robot.proximal_length);
   add(motion.det_a);
@@ -179,7 +183,7 @@ std::string SceneDae::output_name(int i) const {
     if (i < 2) return i == 0 ? "shift" : "saturated";
     i -= 2;
   }
-  static const char* const rest[] = {"energy", "closure", "type_1", "det_a"};
+  static const char* const rest[] = {"energy", "energy_error", "closure", "type_1", "det_a"};
   return rest[i];
 }
 
@@ -187,6 +191,7 @@ std::string SceneDae::state_name(int i) const {
   const auto arm = [](const char* symbol, int k) { return symbol + std::to_string(k / 3 + 1) + std::to_string(k % 3 + 1); };
   if (i < 9) return arm("q", i);
   if (i < 18) return arm("v", i - 9);
+  if (i == work_) return "work";
   static const char* const integral[] = {"integral_x", "integral_y", "integral_z"};
   static const char* const object[] = {"object", "object_rate"};
   static const char* const tool[] = {"yaw", "pitch", "roll", "yaw_rate", "pitch_rate", "roll_rate"};

@@ -3,7 +3,8 @@
 //             q     v            others                 lambda   tau   contacts
 //     q     [ a     -1                                                          ]      a: alpha times identity
 //     v     [ *     * + a M                             -H'      -B    -J_v' n  ]      *: central differences, all arms at once: an arm's
-//     other [ * (integral)       a + its own                           (object) ]         terms know its own angles only
+//     work  [ (push, dampers)    a, object                       -v'            ]         terms know its own angles only
+//     other [ * (integral)       a + its own                           (object) ]
 //     h     [ *     * + a H                                                     ]
 //     tau   [ * (continuous law: differences)                    1              ]
 //     touch [ *     *            (object)                              1        ]
@@ -38,6 +39,11 @@ void SceneDae::jacobian(const DaeMode& mode, const DaePoint& at, double alpha, W
   const Vector9 q = at.x.head<9>(), v = at.x.segment<9>(9);
   const Configuration configuration(q);
 
+  const Matrix39 j_v = simulation_jacobian(robot, configuration);
+  const Vector3 wrist = wrist_position(robot, configuration), velocity = j_v * v, push = scene_.push.at(at.t);
+  const auto touches = [&](int c) { return mode.discrete[static_cast<std::size_t>(c)] != 0; };
+  const auto touch_at = [&](int c) { return touch(c, mode, at.t, at.x, wrist, velocity); };
+
   const auto terms = [&](const Configuration& where, const Vector9& rates, int i) {
     const Vector3 rate = rates.segment<3>(3 * i);
     const ArmResidual arm = arm_residual(robot, constants_, where[i], rate, at.xdot.segment<3>(9 + 3 * i), force[std::size_t(i)]);
@@ -51,10 +57,13 @@ void SceneDae::jacobian(const DaeMode& mode, const DaePoint& at, double alpha, W
     else
       J.block<3, 1>(h + 3 * (i - 1), column) = -change.tip;
     if (integral_ >= 0) J.block<3, 1>(integral_, column) = change.wrist / 3;
+    if (!scene_.push.on_object) J(work_, column) -= push.dot(change.velocity) / 3;
     for (int c = 0; c < num_contacts(); ++c) {
-      if (mode.discrete[static_cast<std::size_t>(c)] == 0) continue;
+      if (!touches(c)) continue;
       const Contact& on = contact(c);
-      J(touching + c, column) = (on.stiffness * on.normal.dot(change.wrist) + on.damping * on.normal.dot(change.velocity)) / 3;
+      const double rate = on.normal.dot(change.velocity) / 3;
+      J(touching + c, column) = on.stiffness * on.normal.dot(change.wrist) / 3 + on.damping * rate;
+      J(work_, column) += 2 * on.damping * touch_at(c).rate * rate;
     }
   };
   const auto scaled = [](ArmTerms t, double factor) {
@@ -73,30 +82,37 @@ void SceneDae::jacobian(const DaeMode& mode, const DaePoint& at, double alpha, W
       write(9 + 3 * i + k, i,
             scaled(terms(configuration, v + Vector9::Unit(3 * i + k), i) - terms(configuration, v - Vector9::Unit(3 * i + k), i), 0.5));
       J(9 + 3 * i + k, 9 + 3 * i + k) -= alpha;
+      J(work_, 9 + 3 * i + k) += 2 * constants_.damping[k] * v[3 * i + k];
     }
   }
   for (int i = 0; i < kArms; ++i) {
     J.block<3, 3>(9 + 3 * i, 9 + 3 * i) += alpha * ArmInertia(constants_, configuration[i]).matrix();
     J(9 + 3 * i, tau + i) = -1;
+    J(work_, 9 + 3 * i) -= at.y[kTorque + i];
+    J(work_, tau + i) = -v[3 * i];
   }
   const Matrix69 closing = closure_jacobian(robot, configuration);
   J.block<6, 9>(h, 9) += alpha * closing;
   J.block<9, 6>(9, h) = -closing.transpose();
   J.bottomRightCorner(3 + num_contacts(), 3 + num_contacts()).setIdentity();
-  const Matrix39 j_v = simulation_jacobian(robot, configuration);
-  for (int c = 0; c < num_contacts(); ++c) J.block<9, 1>(9, touching + c) = -j_v.transpose() * contact(c).normal;
+  for (int c = 0; c < num_contacts(); ++c) {
+    J.block<9, 1>(9, touching + c) = -j_v.transpose() * contact(c).normal;
+    if (touches(c)) J(work_, touching + c) = touch_at(c).opening_rate;
+  }
   if (object_ >= 0) {
     const Object& object = scene_.object;
     J(object_, object_ + 1) = -1;
     J(object_ + 1, object_) = object.stiffness;
     J(object_ + 1, object_ + 1) = alpha * object.mass + object.damping;
+    J(work_, object_ + 1) = 2 * object.damping * at.x[object_ + 1] - (scene_.push.on_object ? push[0] : 0);
     for (int c = 0; c < num_contacts(); ++c) {
       if (!contact(c).is_finger) continue;
       const double along = contact(c).normal.dot(controller_options_.tactile_axis);
-      const bool touches = mode.discrete[static_cast<std::size_t>(c)] != 0;
       J(object_ + 1, touching + c) = along;
-      J(touching + c, object_) = touches ? -contact(c).stiffness * along : 0;
-      J(touching + c, object_ + 1) = touches ? -contact(c).damping * along : 0;
+      if (!touches(c)) continue;
+      J(touching + c, object_) = -contact(c).stiffness * along;
+      J(touching + c, object_ + 1) = -contact(c).damping * along;
+      J(work_, object_ + 1) -= 2 * contact(c).damping * touch_at(c).rate * along;
     }
   }
   Vector x = at.x;
@@ -111,7 +127,10 @@ void SceneDae::jacobian(const DaeMode& mode, const DaePoint& at, double alpha, W
   };
   if (tool_ >= 0) {
     J.block<3, 3>(tool_, tool_ + 3) = -Matrix3::Identity();
-    for (int k = 0; k < 6; ++k) J.block<3, 1>(tool_ + 3, tool_ + k) -= difference(tool_ + k, [&] { return tool_acceleration(x); });
+    for (int k = tool_; k < tool_ + 6; ++k) {
+      J.block<3, 1>(tool_ + 3, k) -= difference(k, [&] { return tool_acceleration(x); });
+      J(work_, k) -= difference(k, [&] { return Vector3(tool_torque(x).cwiseProduct(x.segment<3>(tool_ + 3))); }).sum();
+    }
   }
   if (is_continuous()) {
     for (int k = 0; k < integral_ + 3; ++k) {
