@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
+#include <system_error>
 
 #include "tenon/apps/command_line.hpp"
 #include "tenon/apps/interrupt.hpp"
@@ -13,13 +14,15 @@
 
 namespace {
 
+tenon::OutputError no_standard_output(int error) {
+  return tenon::OutputError(fmt::format("standard output: cannot be written: {}", std::strerror(error)));
+}
+
 int run(int argc, char** argv) {
   tenon::watch_for_interrupts();
   const auto invocation = tenon::read_command_line(argc, argv);
   const int code = invocation ? invocation->verb->run(invocation->arguments) : tenon::kFinished;
-  if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
-    throw tenon::OutputError(fmt::format("standard output: cannot be written: {}", std::strerror(errno)));
-  }
+  if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw no_standard_output(errno);
   return code;
 }
 
@@ -39,6 +42,9 @@ int main(int argc, char** argv) {
     return explain(error, tenon::kBadInput);
   } catch (const tenon::OutputError& error) {
     return explain(error, tenon::kNoOutput);
+  } catch (const std::system_error& error) {  // what printing throws where the text is longer than its buffer
+    if (std::ferror(stdout)) return explain(no_standard_output(error.code().value()), tenon::kNoOutput);
+    return explain(error, tenon::kNotSolved);
   } catch (const std::exception& error) {
     return explain(error, tenon::kNotSolved);
   }

@@ -92,6 +92,21 @@ TEST_F(RobotVerb, RefusesWhatMakesNoSense) {
   EXPECT_EQ(run("delta --workspace nowhere/map.csv").code, 2);
 }
 
+TEST_F(RobotVerb, ItsScenesAreSimulatedUnderTheirNamesOrFromAFile) {
+  const Ended step = run_tenon(folder_, "simulate delta-circle --set radius=0.03 --set simulation.duration=0.2 --output out.csv");
+  EXPECT_EQ(step.code, 0) << step.err;
+  const CsvTable table = read_csv(folder_.path("out.csv"));
+  for (const char* name : {"zx", "zy", "zz", "q11", "q33", "v11", "v33", "tau1", "tau3", "energy", "energy_error"})
+    EXPECT_TRUE(table.has(name));
+  EXPECT_NEAR(table["zx"][0], 0.03, 1e-15);
+  folder_.write("scene.toml", "[robot]\nmodel = \"delta-demo\"\n[reference]\ncentre = [0, 0, 2]\n[simulation]\nduration = 0.1\n");
+  EXPECT_EQ(run_tenon(folder_, "simulate scene.toml --output demo.csv").code, 0);
+  const Ended far = run_tenon(folder_, "simulate delta-circle --set radius=0.6 --output far.csv");
+  EXPECT_EQ(far.code, 2);
+  EXPECT_TRUE(is_one_line(far.err, "tenon: delta-circle:14:10: the reference (0.6, 0, 0.4) is out of reach, 0.183447 m from")) << far.err;
+  EXPECT_FALSE(folder_.has("far.csv") || folder_.has("far.csv.partial"));
+}
+
 TEST_F(RobotVerb, WarnsNearASingularity) {
   const Ended ended = run("delta --inverse 0,0,0.648074");
   EXPECT_EQ(ended.code, 0);
