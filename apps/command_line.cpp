@@ -27,6 +27,8 @@ const std::map<std::string, std::function<CLI::Option*(CLI::App&, Arguments&)>>&
       {"wrenches", [](App& a, Args& v) { return a.add_option("--wrenches", v.wrenches, "the wrench log")->type_name("FILE.csv"); }},
       {"output", [](App& a, Args& v) { return a.add_option("--output", v.output, "where the record goes")->type_name("FILE.csv"); }},
       {"events", [](App& a, Args& v) { return a.add_option("--events", v.events, "where the events go")->type_name("FILE.csv"); }},
+      {"fast-phase",
+       [](App& a, Args& v) { return a.add_option("--fast-phase", v.fast_phase, "collisions in their own time scale")->type_name("FILE.csv"); }},
       {"real-time", [](App& a, Args& v) { return a.add_flag("--real-time", v.real_time, "paced as the clock on the wall"); }},
       {"trace", [](App& a, Args& v) { return a.add_option("--trace", v.trace, "one line per solver iteration")->type_name("FILE.jsonl"); }},
       {"solver", [](App& a, Args& v) { return a.add_option("--solver", v.solver, "the back end")->type_name("NAME"); }},

@@ -16,6 +16,7 @@
 #include "tenon/apps/verb.hpp"
 #include "tenon/core/output_file.hpp"
 #include "tenon/core/trajectory.hpp"
+#include "tenon/problems/contact/fast_phase.hpp"
 #include "tenon/solvers/make_integrator.hpp"
 
 namespace tenon {
@@ -23,6 +24,8 @@ namespace tenon {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr int kFastPhasePoints = 100;  // of one collision in its own time
 
 /// Of one contact, over the whole run.
 struct ContactSummary {
@@ -33,11 +36,17 @@ struct ContactSummary {
 class SimulationRecord {
  public:
   SimulationRecord(const Arguments& arguments, const Simulation& simulation)
-      : arguments_(arguments), dae_(*simulation.dae), workspace_(dae_.make_workspace()),
-        progress_("simulate", std::lround(1e4), arguments.quiet), duration_(simulation.settings.duration) {
+      : arguments_(arguments),
+        collisions_(simulation.collisions),
+        dae_(*simulation.dae),
+        workspace_(dae_.make_workspace()),
+        progress_("simulate", std::lround(1e4), arguments.quiet),
+        duration_(simulation.settings.duration) {
     const std::vector<std::string> columns = trajectory_columns(dae_);
     if (!arguments.output.empty() || !arguments.json) trajectory_.emplace(arguments.output.empty() ? "-" : arguments.output, columns);
     if (!arguments.events.empty()) events_.emplace(arguments.events, event_columns());
+    if (!arguments.fast_phase.empty())
+      fast_phase_.emplace(arguments.fast_phase, std::vector<std::string>{"t", "contact", "tau", "gap", "gap_rate", "gap_acceleration"});
     energy_ = static_cast<std::size_t>(std::find(columns.begin(), columns.end(), "energy") - columns.begin());
     audit_ = static_cast<std::size_t>(std::find(columns.begin(), columns.end(), "energy_error") - columns.begin());
     start_ = Clock::now();
@@ -54,12 +63,14 @@ class SimulationRecord {
     if (audit_ < row_.size()) largest_error_ = std::max(largest_error_, std::abs(row_[audit_]));
     ++rows_;
     progress_.update(std::lround(1e4 * state.t / duration_));
-    if (arguments_.real_time) std::this_thread::sleep_until(start_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(state.t)));
+    if (arguments_.real_time)
+      std::this_thread::sleep_until(start_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(state.t)));
     return !interrupted();
   }
 
   void add(const DaeEvent& event) {
     if (events_) write_event(*events_, event);
+    if (fast_phase_ && event.from == 0 && event.to == 1) write_fast_phase(event);
     ++event_count_;
     if (event.from == 0 && event.to == 1) {
       ++contacts_[event.contact].collisions;
@@ -70,6 +81,7 @@ class SimulationRecord {
   void finish() {
     if (trajectory_) trajectory_->finish();
     if (events_) events_->finish();
+    if (fast_phase_) fast_phase_->finish();
   }
 
   std::string partial() const { return trajectory_ && !arguments_.output.empty() ? trajectory_->file().partial_path() : ""; }
@@ -77,7 +89,8 @@ class SimulationRecord {
 
   Json json(const IntegrationResult& result, const DaeState& state, const std::string& integrator) const {
     Json contacts = Json::array();
-    for (const auto& [name, c] : contacts_) contacts.push(Json::object().set("name", name).set("collisions", c.collisions).set("impulse", c.impulse));
+    for (const auto& [name, c] : contacts_)
+      contacts.push(Json::object().set("name", name).set("collisions", c.collisions).set("impulse", c.impulse));
     Json final_state = Json::object();
     for (int i = 0; i < dae_.num_states(); ++i) final_state.set(dae_.state_name(i), state.x[i]);
     for (int i = 0; i < dae_.num_algebraics(); ++i) final_state.set(dae_.algebraic_name(i), state.y[i]);
@@ -99,8 +112,8 @@ class SimulationRecord {
   }
 
   std::string text(const IntegrationResult& result, const DaeState& state, const std::string& integrator) const {
-    std::string text = fmt::format("{}: {} at t = {:.6g} s; {} steps of {}, {:.3g} ms\n", dae_.name(), to_string(result.status), state.t, result.steps,
-                                   integrator, 1e3 * elapsed());
+    std::string text = fmt::format("{}: {} at t = {:.6g} s; {} steps of {}, {:.3g} ms\n", dae_.name(), to_string(result.status), state.t,
+                                   result.steps, integrator, 1e3 * elapsed());
     text += fmt::format("energy {:.12g} J, largest error of its audit {:.2g} J\n", last_energy_, largest_error_);
     if (contacts_.empty()) return text;
     Table table({"contact", "collisions", "impulse"});
@@ -111,12 +124,23 @@ class SimulationRecord {
  private:
   double elapsed() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
+  /// A collision in its own time scale, by the law that gives this contact its restitution.
+  void write_fast_phase(const DaeEvent& event) {
+    const auto law = collisions_.find(event.contact);
+    if (law == collisions_.end() || !(event.gap_rate_before < 0)) return;
+    for (const contact::FastPoint& point : contact::collision_path(law->second, -event.gap_rate_before, kFastPhasePoints)) {
+      *fast_phase_ << event.t << event.contact << point.tau << point.gap << point.rate << point.acceleration;
+      fast_phase_->end_row();
+    }
+  }
+
   const Arguments& arguments_;
+  const std::map<std::string, contact::Law>& collisions_;
   const Dae& dae_;
   Dae::Workspace workspace_;
   Progress progress_;
   double duration_;
-  std::optional<CsvWriter> trajectory_, events_;
+  std::optional<CsvWriter> trajectory_, events_, fast_phase_;
   std::vector<double> row_;
   std::size_t energy_ = 0, audit_ = 0;  // their columns
   double last_energy_ = 0, largest_error_ = 0;

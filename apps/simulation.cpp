@@ -11,6 +11,26 @@ namespace tenon {
 
 namespace {
 
+template <int D>
+std::unique_ptr<Dae> make_dae(contact::Scene<D> scene) {
+  return std::make_unique<contact::ContactDae<D>>(std::move(scene));
+}
+
+Simulation open_contact(const std::string& name_or_path, const std::vector<std::string>& overrides) {
+  contact::SceneFile file = contact::load_scene(name_or_path, overrides);
+  Simulation out;
+  out.settings = file.simulation;
+  std::visit(
+      [&](auto& scene) {
+        for (const auto& c : scene.constraints) {
+          if (!c.is_joint() && c.is_two_scale && c.restitution > 0) out.collisions[c.name] = contact::law_of(c.restitution, c.contact_time);
+        }
+        out.dae = make_dae(std::move(scene));
+      },
+      file.scene);
+  return out;
+}
+
 Simulation open_delta(const std::string& name_or_path, const std::vector<std::string>& overrides) {
   delta::Scene scene = delta::load_scene(name_or_path, overrides);
   Simulation out;
@@ -34,15 +54,8 @@ bool sounds_like_delta(const std::string& name) {
 
 Simulation open_simulation(const std::string& name_or_path, const std::vector<std::string>& overrides) {
   const bool is_word = name_or_path.find_first_of("/.") == std::string::npos;
-  if (delta::has_delta_robot(name_or_path) || (is_word && sounds_like_delta(name_or_path))) return open_delta(name_or_path, overrides);
-  contact::SceneFile file = contact::load_scene(name_or_path, overrides);
-  Simulation out;
-  out.settings = file.simulation;
-  if (auto* planar = std::get_if<contact::Scene<2>>(&file.scene))
-    out.dae = std::make_unique<contact::ContactDae<2>>(std::move(*planar));
-  else
-    out.dae = std::make_unique<contact::ContactDae<3>>(std::move(std::get<contact::Scene<3>>(file.scene)));
-  return out;
+  const bool is_delta = delta::has_delta_robot(name_or_path) || (is_word && sounds_like_delta(name_or_path));
+  return is_delta ? open_delta(name_or_path, overrides) : open_contact(name_or_path, overrides);
 }
 
 }  // namespace tenon

@@ -1,6 +1,7 @@
 // A scene opened by name or file: its equations, and how long and how finely to integrate them.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@ namespace tenon {
 struct Simulation {
   std::unique_ptr<Dae> dae;
   contact::SimulationSettings settings;
+  std::map<std::string, contact::Law> collisions;  // the law of each two-scale contact's fast phase, by the contact's name
 };
 
 /// A delta robot's scene or one of bodies in contact. Throws as their load_scene do, and where the wrist starts at a singularity.

@@ -119,9 +119,23 @@ class Dae {
     static_cast<void>(xdot), static_cast<void>(y);
   }
 
+  /// Where the flow of a mode is known in closed form: the state after dt, with no error to control.
+  virtual bool has_exact_flow(const DaeMode& mode) const {
+    static_cast<void>(mode);
+    return false;
+  }
+  virtual void exact_flow(const DaeMode& mode, double dt, ConstVectorRef x, VectorRef next) const {
+    static_cast<void>(mode), static_cast<void>(dt), static_cast<void>(x), static_cast<void>(next);
+  }
+
   /// Values whose fall through zero ends the mode. A guard that starts at or below zero is asleep until it has been positive.
   virtual void guards(const DaeMode& mode, const DaePoint& at, Workspace& workspace, VectorRef values) const {
     static_cast<void>(mode), static_cast<void>(at), static_cast<void>(workspace), static_cast<void>(values);
+  }
+  /// False where the guards of this mode look at t and x alone: xdot and y are then stale there, which saves a solve for each look.
+  virtual bool guards_read_derivatives(const DaeMode& mode) const {
+    static_cast<void>(mode);
+    return true;
   }
   /// The next time at which a clock strikes, after state.t; infinity for none.
   virtual double next_event_time(const DaeState& state) const;

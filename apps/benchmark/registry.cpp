@@ -3,6 +3,7 @@
 namespace tenon {
 
 void add_allocation(std::vector<Benchmark>& rows);
+void add_contact(std::vector<Benchmark>& rows);
 void add_delta(std::vector<Benchmark>& rows);
 void add_linear_allocation(std::vector<Benchmark>& rows);
 
@@ -10,6 +11,7 @@ std::vector<Benchmark> benchmarks() {
   std::vector<Benchmark> rows;
   add_allocation(rows);
   add_linear_allocation(rows);
+  add_contact(rows);
   add_delta(rows);
   return rows;
 }

@@ -13,8 +13,8 @@ namespace tenon::contact {
 
 namespace {
 
-constexpr double kRank = 1e-11;       // of H M^-1 H': smaller pivots count as dependent contacts
-constexpr int kHeldRedundant = 0;     // places in DaeMode::held
+constexpr double kRank = 1e-11;    // of H M^-1 H': smaller pivots count as dependent contacts
+constexpr int kHeldRedundant = 0;  // places in DaeMode::held
 constexpr int kHeldEnergy = 1;
 
 const std::vector<std::string>& position_names(int dimension) {
@@ -41,8 +41,13 @@ ContactDae<D>::ContactDae(Scene<D> scene) : scene_(std::move(scene)) {
       state_names_.push_back(velocity + number);
     }
     places_.push_back(place);
+    Velocities<double, D> inverse = Velocities<double, D>::Zero();
+    for (int l = 0; l < body.freedoms; ++l) inverse[l] = l < D ? 1 / body.mass : 1 / body.inertia[l - D];
+    inverse_masses_.push_back(inverse);
     num_states_ += place.nq + place.nv;
   }
+  inverse_masses_.push_back(Velocities<double, D>::Zero());
+  is_ballistic_ = scene_.forces.empty() && std::none_of(places_.begin(), places_.end(), [](Place p) { return p.nv > 3; });
   works_ = num_states_;
   force_work_.assign(scene_.forces.size(), -1);
   if (scene_.with_audit) {
@@ -59,6 +64,8 @@ ContactDae<D>::ContactDae(Scene<D> scene) : scene_(std::move(scene)) {
     order_.push_back(i);
     if (!c.is_joint()) contacts_.push_back(i);
     has_friction_ |= c.friction > 0;
+    has_one_law_ |= !c.is_joint() && !c.is_two_scale;
+    is_ballistic_ &= !c.is_joint();
   }
   const auto reach = [&](int i) {
     const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
@@ -126,14 +133,6 @@ void ContactDae<D>::load(double t, ConstVectorRef x, Bodies& bodies) const {
 }
 
 template <int D>
-double ContactDae<D>::inverse_mass(int body, int l) const {
-  if (body == kWorld) return 0;
-  const Body<D>& b = scene_.bodies[static_cast<std::size_t>(body)];
-  if (l >= b.freedoms) return 0;
-  return l < D ? 1 / b.mass : 1 / b.inertia[l - D];
-}
-
-template <int D>
 double ContactDae<D>::softness(const DaeMode& mode, const Constraint<D>& c) const {
   return mode.held[kHeldRedundant] == 0 ? 0 : kSoftness * (inverse_mass(c.a, 0) + inverse_mass(c.b, 0));
 }
@@ -152,12 +151,6 @@ Velocities<double, D> own_force(const Body<D>& body, const Point<double, D>& gra
   return Q;
 }
 
-/// World axes of an index: the last entry of the workspace's lists.
-template <class List>
-auto& of(List& list, int body) {
-  return body == kWorld ? list.back() : list[static_cast<std::size_t>(body)];
-}
-
 }  // namespace
 
 template <int D>
@@ -165,7 +158,8 @@ void ContactDae<D>::apply_forces(double t, Bodies& bodies, double* powers) const
   for (std::size_t i = 0; i < scene_.bodies.size(); ++i) bodies.force[i] = own_force(scene_.bodies[i], scene_.gravity, bodies.v[i]);
   for (std::size_t k = 0; k < scene_.forces.size(); ++k) {
     const Force<D>& force = scene_.forces[k];
-    const auto value = evaluate<double, D>(force, t, of(bodies.q, force.a), of(bodies.v, force.a), of(bodies.q, force.b), of(bodies.v, force.b));
+    const auto value =
+        evaluate<double, D>(force, t, of(bodies.q, force.a), of(bodies.v, force.a), of(bodies.q, force.b), of(bodies.v, force.b));
     of(bodies.force, force.a) += value.Q_A;
     of(bodies.force, force.b) += value.Q_B;
     if (powers != nullptr && force_work_[k] >= 0) powers[force_work_[k]] = value.power;
@@ -190,7 +184,7 @@ GapValue<double, D> ContactDae<D>::gap(int constraint, double t, ConstVectorRef 
 template <int D>
 void ContactDae<D>::solve_multipliers(const DaeMode& mode, double t, Bodies& bodies) const {
   for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
-    for (int l = 0; l < places_[i].nv; ++l) bodies.acceleration[i][l] = inverse_mass(static_cast<int>(i), l) * bodies.force[i][l];
+    bodies.acceleration[i] = inverse_masses_[i].cwiseProduct(bodies.force[i]);
   }
   bodies.active.clear();
   bodies.lambda.setZero();
@@ -213,8 +207,9 @@ void ContactDae<D>::solve_multipliers(const DaeMode& mode, double t, Bodies& bod
   std::fill(bodies.first_seen.begin(), bodies.first_seen.end(), k);
   // a' M^-1 b of two generalised forces on one body
   const auto product = [&](int body, const Velocities<double, D>& a, const Velocities<double, D>& b) {
+    const Velocities<double, D>& inverse = of(inverse_masses_, body);
     double sum = 0;
-    for (int l = 0; l < place(body).nv; ++l) sum += a[l] * inverse_mass(body, l) * b[l];
+    for (int l = 0; l < kVelocities<D>; ++l) sum += a[l] * inverse[l] * b[l];
     return sum;
   };
   for (int row = 0; row < k; ++row) {
@@ -246,8 +241,7 @@ void ContactDae<D>::solve_multipliers(const DaeMode& mode, double t, Bodies& bod
     }
     const double law = g.bias + c.law.alpha1 * g.hdot + c.law.alpha0 * g.h + c.law.alpha3 * g.h * g.h * g.h;
     bodies.rhs[row] = -law;
-    for (int l = 0; l < place(c.a).nv; ++l) bodies.rhs[row] -= g.H_A[l] * of(bodies.acceleration, c.a)[l];
-    for (int l = 0; l < place(c.b).nv; ++l) bodies.rhs[row] -= g.H_B[l] * of(bodies.acceleration, c.b)[l];
+    bodies.rhs[row] -= g.H_A.dot(of(bodies.acceleration, c.a)) + g.H_B.dot(of(bodies.acceleration, c.b));
   }
   if (has_friction_) {
     bodies.lu.compute(bodies.dense);
@@ -266,13 +260,14 @@ void ContactDae<D>::set_accelerations(Bodies& bodies) const {
   for (const int i : bodies.active) {
     const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
     const double lambda = bodies.lambda[i];
-    for (int l = 0; l < place(c.a).nv; ++l) of(bodies.acceleration, c.a)[l] += inverse_mass(c.a, l) * bodies.push_a[static_cast<std::size_t>(i)][l] * lambda;
-    for (int l = 0; l < place(c.b).nv; ++l) of(bodies.acceleration, c.b)[l] += inverse_mass(c.b, l) * bodies.push_b[static_cast<std::size_t>(i)][l] * lambda;
+    of(bodies.acceleration, c.a) += lambda * of(inverse_masses_, c.a).cwiseProduct(bodies.push_a[static_cast<std::size_t>(i)]);
+    of(bodies.acceleration, c.b) += lambda * of(inverse_masses_, c.b).cwiseProduct(bodies.push_b[static_cast<std::size_t>(i)]);
   }
 }
 
 template <int D>
-void ContactDae<D>::derivatives(const DaeMode& mode, double t, ConstVectorRef x, ConstVectorRef, Workspace& workspace, VectorRef xdot, VectorRef y) const {
+void ContactDae<D>::derivatives(const DaeMode& mode, double t, ConstVectorRef x, ConstVectorRef, Workspace& workspace, VectorRef xdot,
+                                VectorRef y) const {
   auto& bodies = static_cast<Bodies&>(*workspace);
   load(t, x, bodies);
   if (scene_.with_audit) xdot.tail(num_states_ - works_).setZero();
@@ -332,10 +327,10 @@ void ContactDae<D>::guards(const DaeMode& mode, const DaePoint& at, Workspace& w
       continue;
     }
     const GapValue<double, D> g = gap_of(i, at.t, bodies);
-    if (m == kFree) values[2 * i] = g.h + kGapTolerance;
     const double hddot = -(c.law.alpha1 * g.hdot + c.law.alpha0 * g.h + c.law.alpha3 * g.h * g.h * g.h);  // by the law
-    if (m == kLeaving) {
-      values[2 * i] = g.hdot + 2 * kSpeedTolerance;
+    if (m == kFree) {
+      // falls through 0 where the gap is closed and closing; a contact just released sleeps until one of both is over
+      values[2 * i] = std::max(g.h + kGapTolerance, g.hdot + 2 * kSpeedTolerance);
       if (!c.is_two_scale && g.h <= 0 && g.hdot < -2 * kSpeedTolerance) {  // closing, but the law would pull: until it would not
         double free = g.bias;
         for (int l = 0; l < place(c.a).nv; ++l) free += g.H_A[l] * at.xdot[place(c.a).v + l];
@@ -351,18 +346,50 @@ void ContactDae<D>::guards(const DaeMode& mode, const DaePoint& at, Workspace& w
   }
 }
 
-/// Where contacts are near, no further than they take to close by half; events between two samples of a step stay visible so.
+/// Gravity alone between contacts, and no spatial body whose rotation is not uniform.
+template <int D>
+bool ContactDae<D>::has_exact_flow(const DaeMode& mode) const {
+  return is_ballistic_ && std::all_of(mode.discrete.begin(), mode.discrete.end(), [](int m) { return m == kFree; });
+}
+
+template <int D>
+void ContactDae<D>::exact_flow(const DaeMode&, double dt, ConstVectorRef x, VectorRef next) const {
+  next = x;
+  for (const Place at : places_) {
+    next.segment(at.q, at.nv) += dt * x.segment(at.v, at.nv);
+    for (int l = 0; l < std::min(D, at.nv); ++l) {
+      next[at.q + l] += 0.5 * dt * dt * scene_.gravity[l];
+      next[at.v + l] += dt * scene_.gravity[l];
+    }
+  }
+}
+
+template <int D>
+bool ContactDae<D>::guards_read_derivatives(const DaeMode& mode) const {
+  return has_one_law_ ||
+         std::any_of(contacts_.begin(), contacts_.end(), [&](int i) { return mode.discrete[static_cast<std::size_t>(i)] != kFree; });
+}
+
+/// As long as it takes to cross a shape's size at this speed and under gravity, so that nobody passes through a shape between two samples
+/// of a step; and half a radian of a turning body. A face without end has nothing behind it.
 template <int D>
 double ContactDae<D>::max_step(const DaeState& state, Workspace& workspace) const {
   auto& bodies = static_cast<Bodies&>(*workspace);
   load(state.t, state.x, bodies);
-  double longest = std::numeric_limits<double>::infinity();
+  const double infinity = std::numeric_limits<double>::infinity(), gravity = scene_.gravity.norm();
+  double longest = infinity;
   for (const int i : contacts_) {
     const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
-    if (state.mode.discrete[static_cast<std::size_t>(i)] != kFree || c.shape.vertices.empty() || c.shape.is_face()) continue;
+    if (state.mode.discrete[static_cast<std::size_t>(i)] != kFree) continue;
+    if (c.shape.is_face()) {
+      if (c.gap.a.squaredNorm() > 0 && place(c.a).nv > D)
+        longest = std::min(longest, 0.5 / of(bodies.v, c.a).tail(kVelocities<D> - D).norm());
+      continue;
+    }
     const GapValue<double, D> g = gap_of(i, state.t, bodies);
-    const double size = std::max(c.radius, 1e-3);  // a ball that crosses a corner is near it for its own size
-    if (std::abs(g.hdot) > 0) longest = std::min(longest, (std::max(g.h, 0.0) + size) / std::abs(g.hdot));
+    const double size = c.shape.vertices.empty() && c.gap.sign < 0 ? 0.1 * c.gap.offset : std::max(c.radius, 5e-3);
+    const double way = std::max(g.h, 0.0) + size, speed = std::abs(g.hdot);
+    longest = std::min(longest, 2 * way / (speed + std::sqrt(speed * speed + 2 * gravity * way)));
   }
   return longest;
 }
@@ -376,7 +403,8 @@ double ContactDae<D>::energy_of(double t, const Bodies& bodies) const {
   }
   for (const Force<D>& force : scene_.forces) {
     if (force.kind != ForceKind::spring && force.kind != ForceKind::torsion) continue;
-    sum += evaluate<double, D>(force, t, of(bodies.q, force.a), of(bodies.v, force.a), of(bodies.q, force.b), of(bodies.v, force.b)).potential;
+    sum +=
+        evaluate<double, D>(force, t, of(bodies.q, force.a), of(bodies.v, force.a), of(bodies.q, force.b), of(bodies.v, force.b)).potential;
   }
   return sum;
 }
@@ -413,7 +441,7 @@ void ContactDae<D>::outputs(const DaeState& state, Workspace& workspace, VectorR
   for (int k = 0; k < n; ++k) {
     const int i = contacts_[static_cast<std::size_t>(k)];
     values[k] = gap_of(i, state.t, bodies).h;
-    values[n + k] = shown(state.mode.discrete[static_cast<std::size_t>(i)]);
+    values[n + k] = state.mode.discrete[static_cast<std::size_t>(i)];
   }
   values[2 * n] = energy_of(state.t, bodies);
   if (scene_.with_audit) values[2 * n + 1] = values[2 * n] - state.mode.held[kHeldEnergy] - state.x.tail(num_states_ - works_).sum();

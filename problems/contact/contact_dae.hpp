@@ -1,12 +1,12 @@
 // A scene of bodies and contacts as a hybrid DAE of index 1.
 //
 //     qdot = E(q) v,    M vdot = Q(t, q, v) + sum_i H_i' lambda_i
-//     joint or active contact:  h_i'' + alpha1 h_i' + alpha0 h_i + alpha3 h_i^3 + r_i lambda_i = 0        r_i = 0, or tiny where contacts are redundant
-//     inactive contact:         lambda_i = 0,  h_i >= 0
-//     work of every multiplier and of every force without potential:  Wdot = power                         so that energy - sum W stays what it was
+//     joint or active contact:  h_i'' + alpha1 h_i' + alpha0 h_i + alpha3 h_i^3 + r_i lambda_i = 0        r_i = 0, or tiny where contacts
+//     are redundant inactive contact:         lambda_i = 0,  h_i >= 0 work of every multiplier and of every force without potential:  Wdot
+//     = power                         so that energy - sum W stays what it was
 //
-// x holds q and v of each body in turn, then the works; y holds the multipliers. One state machine runs for each contact (contact_transition.cpp), its fast
-// phase in fast_phase.hpp. Derivation: contact.md.  Source: [S], the slides on contact and collision.
+// x holds q and v of each body in turn, then the works; y holds the multipliers. One state machine runs for each contact
+// (contact_transition.cpp), its fast phase in fast_phase.hpp. Derivation: contact.md.  Source: [S], the slides on contact and collision.
 #pragma once
 
 #include "tenon/core/dae.hpp"
@@ -17,21 +17,26 @@
 
 namespace tenon::contact {
 
-/// State of one contact. `leaving` is free as well, but touching: what ends it is that the gap closes again, not that it is zero.
-enum ContactMode : int { kFree = 0, kCollision = 1, kContact = 2, kLeaving = 3 };
-/// As the record shows it: 0 free, 1 collision, 2 contact.
-constexpr int shown(int mode) { return mode == kLeaving ? kFree : mode; }
+/// State of one contact, as the record shows it.
+enum ContactMode : int { kFree = 0, kCollision = 1, kContact = 2 };
 
-inline constexpr double kGapTolerance = 1e-12;     // m: a free contact's guard is h + this
-inline constexpr double kTouching = 1e-9;          // m: gaps up to here touch
-inline constexpr double kSpeedTolerance = 1e-10;   // m/s: a gap that closes no faster stands still
+inline constexpr double kGapTolerance = 1e-12;          // m: a free contact collides where its gap closes at less than minus this
+inline constexpr double kTouching = 1e-9;               // m: gaps up to here touch
+inline constexpr double kSpeedTolerance = 1e-10;        // m/s: a gap that closes no faster stands still
 inline constexpr double kAccelerationTolerance = 1e-9;  // m/s^2
-inline constexpr double kSoftness = 1e-9;          // of redundant contacts, relative to the bodies' inverse masses
+inline constexpr double kSoftness = 1e-9;               // of redundant contacts, relative to the bodies' inverse masses
+
+/// A body's entry in a list that has the world's at its end.
+template <class List>
+auto& of(List& list, int body) {
+  return body == kWorld ? list.back() : list[static_cast<std::size_t>(body)];
+}
 
 template <int D>
 class ContactDae final : public Dae {
  public:
-  /// Throws std::invalid_argument, naming the body or contact, where a mass or inertia is not positive, a gap is closed at the start or a joint is open.
+  /// Throws std::invalid_argument, naming the body or contact, where a mass or inertia is not positive, a gap is closed at the start or a
+  /// joint is open.
   explicit ContactDae(Scene<D> scene);
 
   const Scene<D>& scene() const { return scene_; }
@@ -45,7 +50,11 @@ class ContactDae final : public Dae {
   SparsePattern jacobian_pattern() const override { return pattern_; }
   void jacobian(const DaeMode& mode, const DaePoint& at, double alpha, Workspace& workspace, std::span<double> values) const override;
   bool has_derivatives() const override { return true; }
-  void derivatives(const DaeMode& mode, double t, ConstVectorRef x, ConstVectorRef u, Workspace& workspace, VectorRef xdot, VectorRef y) const override;
+  void derivatives(const DaeMode& mode, double t, ConstVectorRef x, ConstVectorRef u, Workspace& workspace, VectorRef xdot,
+                   VectorRef y) const override;
+  bool has_exact_flow(const DaeMode& mode) const override;
+  void exact_flow(const DaeMode& mode, double dt, ConstVectorRef x, VectorRef next) const override;
+  bool guards_read_derivatives(const DaeMode& mode) const override;
   void guards(const DaeMode& mode, const DaePoint& at, Workspace& workspace, VectorRef values) const override;
   Transition transition(DaeState& state, std::span<const int> fired, Workspace& workspace, const EventLog& log) const override;
   double max_step(const DaeState& state, Workspace& workspace) const override;
@@ -73,7 +82,7 @@ class ContactDae final : public Dae {
   };
 
   Place place(int body) const { return body == kWorld ? Place{0, 0, 0, 0} : places_[static_cast<std::size_t>(body)]; }
-  double inverse_mass(int body, int l) const;
+  double inverse_mass(int body, int l) const { return of(inverse_masses_, body)[l]; }
   double softness(const DaeMode& mode, const Constraint<D>& c) const;
   void load(double t, ConstVectorRef x, Bodies& bodies) const;
   void apply_forces(double t, Bodies& bodies, double* powers) const;
@@ -85,26 +94,26 @@ class ContactDae final : public Dae {
   double* work_of(DaeState& state, int constraint) const;
 
   bool release(DaeState& state, std::span<const int> fired, const Bodies& bodies, const EventLog& log) const;
-  bool rearm(DaeState& state, const Bodies& bodies) const;
   bool begin_one_law(DaeState& state, const Bodies& bodies, const EventLog& log) const;
   bool settle_one_law(DaeState& state, const Bodies& bodies, const EventLog& log) const;
   Transition collide(DaeState& state, Bodies& bodies, const EventLog& log) const;
   Transition distribute(DaeState& state, Bodies& bodies, const EventLog& log) const;
-  void report(const DaeState& state, int constraint, int from, int to, const Bodies& bodies, double rate_after, double impulse, double energy_after,
-              const EventLog& log) const;
+  void report(const DaeState& state, int constraint, int from, int to, const Bodies& bodies, double rate_after, double impulse,
+              double energy_after, const EventLog& log) const;
 
   void find_pattern();
   void check() const;
 
   Scene<D> scene_;
   std::vector<Place> places_;
-  std::vector<int> contacts_;        // the constraints that are no joints
-  std::vector<int> order_;           // of the constraints along the bodies, for the envelope
-  std::vector<int> force_work_;      // where in x a force's work stands, -1 where it has none
+  std::vector<Velocities<double, D>> inverse_masses_;  // 0 where a body has no freedom; the world's last
+  std::vector<int> contacts_;                          // the constraints that are no joints
+  std::vector<int> order_;                             // of the constraints along the bodies, for the envelope
+  std::vector<int> force_work_;                        // where in x a force's work stands, -1 where it has none
   std::vector<std::string> state_names_;
-  int num_states_ = 0, works_ = 0;   // works_: where in x the first work stands
+  int num_states_ = 0, works_ = 0;  // works_: where in x the first work stands
   SparsePattern pattern_;
-  bool has_friction_ = false;
+  bool has_friction_ = false, has_one_law_ = false, is_ballistic_ = true;  // is_ballistic_: between contacts nothing acts but gravity
 };
 
 /// The part of x that one body has, filled up where it has not all freedoms.
@@ -115,16 +124,16 @@ struct ContactDae<D>::Bodies : Dae::Scratch {
   std::vector<Velocities<double, D>> v, force, acceleration;
   std::vector<Pose<double, D>> poses;
 
-  std::vector<int> active;                     // constraints, in the order of the envelope
-  std::vector<GapValue<double, D>> gaps;       // by constraint; those of active ones are there
+  std::vector<int> active;                            // constraints, in the order of the envelope
+  std::vector<GapValue<double, D>> gaps;              // by constraint; those of active ones are there
   std::vector<Velocities<double, D>> push_a, push_b;  // generalised force of one unit of lambda
   std::vector<double> push_power;
-  std::vector<int> first_seen;                 // of each body among the active constraints
+  std::vector<int> first_seen;  // of each body among the active constraints
   Skyline skyline;
-  Eigen::MatrixXd dense;                       // with friction: H M^-1 H' is not symmetric then
+  Eigen::MatrixXd dense;  // with friction: H M^-1 H' is not symmetric then
   Eigen::PartialPivLU<Eigen::MatrixXd> lu;
   Vector rhs, lambda;
-  int defect = 0;                              // of the rank of H M^-1 H'
+  int defect = 0;  // of the rank of H M^-1 H'
   Vector scratch_x, scratch_xdot, scratch_y;
 };
 

@@ -1,5 +1,5 @@
-// The Jacobian of ContactDae: each constraint and force is evaluated once on numbers that carry their derivatives with respect to the positions
-// and velocities of its two bodies, so that it is exact, and no formula stands twice.
+// The Jacobian of ContactDae: each constraint and force is evaluated once on numbers that carry their derivatives with respect to the
+// positions and velocities of its two bodies, so that it is exact, and no formula stands twice.
 #include "tenon/problems/contact/constraint_rows.hpp"
 #include "tenon/problems/contact/contact_dae.hpp"
 #include "tenon/problems/contact/dual.hpp"
@@ -20,7 +20,8 @@ struct LocalState {
   Positions<LocalDual<D>, D> q_a, q_b;
   Velocities<LocalDual<D>, D> v_a, v_b;
 
-  LocalState(const Positions<double, D>& qa, const Velocities<double, D>& va, const Positions<double, D>& qb, const Velocities<double, D>& vb) {
+  LocalState(const Positions<double, D>& qa, const Velocities<double, D>& va, const Positions<double, D>& qb,
+             const Velocities<double, D>& vb) {
     int k = 0;
     for (int l = 0; l < kPositions<D>; ++l) q_a[l] = LocalDual<D>(qa[l], kLocal<D>, k++);
     for (int l = 0; l < kVelocities<D>; ++l) v_a[l] = LocalDual<D>(va[l], kLocal<D>, k++);
@@ -28,11 +29,6 @@ struct LocalState {
     for (int l = 0; l < kVelocities<D>; ++l) v_b[l] = LocalDual<D>(vb[l], kLocal<D>, k++);
   }
 };
-
-template <class List>
-auto& of(List& list, int body) {
-  return body == kWorld ? list.back() : list[static_cast<std::size_t>(body)];
-}
 
 }  // namespace
 
@@ -144,7 +140,8 @@ void ContactDae<D>::jacobian(const DaeMode& mode, const DaePoint& at, double alp
     add(multiplier, multiplier, softness(mode, c));
 
     // forces and power are linear in lambda: their values at one unit are the column of lambda
-    const auto unit = constraint_rows<double, D>(c, gap, at.t, of(bodies.poses, c.a), of(bodies.poses, c.b), of(bodies.q, c.a), of(bodies.q, c.b), 1.0);
+    const auto unit =
+        constraint_rows<double, D>(c, gap, at.t, of(bodies.poses, c.a), of(bodies.poses, c.b), of(bodies.q, c.a), of(bodies.q, c.b), 1.0);
     for (int l = 0; l < a.nv; ++l) {
       add(multiplier, a.v + l, alpha * unit.H_A[l]);
       add(a.v + l, multiplier, -unit.on_a[l]);

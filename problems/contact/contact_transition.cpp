@@ -1,11 +1,12 @@
-// The state machine of the contacts, and what becomes of the velocities at an event. All tests are on levels, so that a start exactly touching, or a
-// restart, is treated as an event would be.
+// The state machine of the contacts, and what becomes of the velocities at an event. All tests are on levels, so that a start exactly
+// touching, or a restart, is treated as an event would be.
 //
 //     free -> collision     h <= 0 and closing; two-scale: the fast phase happens here and now, q stands still
 //     collision -> contact  two-scale: the rebound is slower than rest_speed; one-law: |h'| and |h''| are small and lambda > 0
 //     -> free               lambda < 0
 //     touching, at rest     lambda >= 0, h'' >= 0, lambda h'' = 0 over all such contacts at once  (distribute)
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "tenon/problems/contact/contact_dae.hpp"
@@ -16,6 +17,15 @@ namespace {
 
 constexpr double kClosed = 1e-11;  // m: gaps up to here collide
 constexpr int kHeldRedundant = 0;
+
+/// Unit vectors across the normal.
+std::array<Point<double, 2>, 1> tangents_of(const Point<double, 2>& n) {
+  return {Point<double, 2>(-n[1], n[0])};
+}
+std::array<Point<double, 3>, 2> tangents_of(const Point<double, 3>& n) {
+  const Point<double, 3> first = n.unitOrthogonal(), second = n.cross(first);
+  return {first, second};
+}
 
 }  // namespace
 
@@ -28,17 +38,14 @@ Transition ContactDae<D>::transition(DaeState& state, std::span<const int> fired
   if (begin_one_law(state, bodies, log)) return {.changed = true};
   const Transition collision = collide(state, bodies, log);
   if (collision.changed || !collision.failure.empty()) return collision;
-  const bool is_rearmed = rearm(state, bodies);
-  Transition distributed = distribute(state, bodies, log);
-  distributed.changed |= is_rearmed;
-  return distributed;
+  return distribute(state, bodies, log);
 }
 
 template <int D>
 void ContactDae<D>::report(const DaeState& state, int constraint, int from, int to, const Bodies& bodies, double rate_after, double impulse,
                            double energy_after, const EventLog& log) const {
   const GapValue<double, D> g = gap_of(constraint, state.t, bodies);
-  log({state.t, scene_.constraints[static_cast<std::size_t>(constraint)].name, shown(from), shown(to), g.h, g.hdot, rate_after, impulse,
+  log({state.t, scene_.constraints[static_cast<std::size_t>(constraint)].name, from, to, g.h, g.hdot, rate_after, impulse,
        energy_of(state.t, bodies), energy_after});
 }
 
@@ -48,8 +55,8 @@ double ContactDae<D>::acceleration(int constraint, const Bodies& bodies) const {
   const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(constraint)];
   const GapValue<double, D> g = gap_of(constraint, bodies.t, bodies);
   double sum = g.bias;
-  for (int l = 0; l < place(c.a).nv; ++l) sum += g.H_A[l] * bodies.acceleration[static_cast<std::size_t>(c.a)][l];
-  for (int l = 0; l < place(c.b).nv; ++l) sum += g.H_B[l] * bodies.acceleration[static_cast<std::size_t>(c.b)][l];
+  for (int l = 0; l < place(c.a).nv; ++l) sum += g.H_A[l] * of(bodies.acceleration, c.a)[l];
+  for (int l = 0; l < place(c.b).nv; ++l) sum += g.H_B[l] * of(bodies.acceleration, c.b)[l];
   return sum;
 }
 
@@ -65,23 +72,8 @@ bool ContactDae<D>::release(DaeState& state, std::span<const int> fired, const B
     const double energy = energy_of(state.t, bodies);
     const GapValue<double, D> g = gap_of(i, state.t, bodies);
     report(state, i, mode, kFree, bodies, g.hdot, 0, energy, log);
-    mode = g.h > kTouching ? kFree : kLeaving;
+    mode = kFree;
     is_changed = true;
-  }
-  return is_changed;
-}
-
-/// Free contacts that have opened are watched for their gap again; those that touch, for closing.
-template <int D>
-bool ContactDae<D>::rearm(DaeState& state, const Bodies& bodies) const {
-  bool is_changed = false;
-  for (const int i : contacts_) {
-    int& mode = state.mode.discrete[static_cast<std::size_t>(i)];
-    if (mode != kFree && mode != kLeaving) continue;
-    const GapValue<double, D> g = gap_of(i, state.t, bodies);
-    const int now = g.h > (mode == kFree || g.hdot < 0 ? kGapTolerance : kTouching) ? kFree : kLeaving;
-    is_changed |= now != mode;
-    mode = now;
   }
   return is_changed;
 }
@@ -92,7 +84,7 @@ bool ContactDae<D>::begin_one_law(DaeState& state, const Bodies& bodies, const E
   for (const int i : contacts_) {
     const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
     int& mode = state.mode.discrete[static_cast<std::size_t>(i)];
-    if (c.is_two_scale || (mode != kFree && mode != kLeaving)) continue;
+    if (c.is_two_scale || mode != kFree) continue;
     const GapValue<double, D> g = gap_of(i, state.t, bodies);
     if (g.h > kClosed || g.hdot >= -kSpeedTolerance) continue;
     // where the free motion opens faster than the law would, the law would have to pull
@@ -148,49 +140,71 @@ Transition ContactDae<D>::collide(DaeState& state, Bodies& bodies, const EventLo
   solve_multipliers(joints_only, state.t, bodies);
   const std::vector<int> joints = bodies.active;
 
-  const int k = static_cast<int>(touching.size()), m = static_cast<int>(joints.size());
-  std::vector<GapValue<double, D>> gaps;
-  for (const int i : touching) gaps.push_back(gap_of(i, state.t, bodies));
-  const auto product = [&](int c, const GapValue<double, D>& g, int d, const GapValue<double, D>& f) {  // H_c M^-1 H_d'
-    const Constraint<D>&first = scene_.constraints[static_cast<std::size_t>(c)], &second = scene_.constraints[static_cast<std::size_t>(d)];
+  // one row for each normal, then those of the tangents where there is friction
+  struct Row {
+    int constraint;
+    Velocities<double, D> H_A, H_B;
+    double rate;
+  };
+  std::vector<Row> rows, held;
+  const int k = static_cast<int>(touching.size()), tangents = has_friction_ ? D - 1 : 0;
+  std::vector<double> gaps;
+  for (const int i : touching) {
+    const GapValue<double, D> g = gap_of(i, state.t, bodies);
+    rows.push_back({i, g.H_A, g.H_B, g.hdot});
+    gaps.push_back(g.h);
+  }
+  for (int c = 0; c < k && tangents > 0; ++c) {
+    const int i = touching[static_cast<std::size_t>(c)];
+    const Constraint<D>& contact = scene_.constraints[static_cast<std::size_t>(i)];
+    const GapValue<double, D> g = gap_of(i, state.t, bodies);
+    const Point<double, D> arm_a = g.at_a - contact.radius_a * g.normal, arm_b = g.at_b - contact.radius_a * g.normal;
+    for (const Point<double, D>& direction : tangents_of(g.normal)) {
+      const Point<double, D> opposite = -direction;
+      const Velocities<double, D> on_a = of(bodies.poses, contact.a).force(arm_a, direction),
+                                  on_b = of(bodies.poses, contact.b).force(arm_b, opposite);
+      rows.push_back({i, on_a, on_b, on_a.dot(of(bodies.v, contact.a)) + on_b.dot(of(bodies.v, contact.b))});
+    }
+  }
+  for (const int j : joints) {
+    const auto& g = bodies.gaps[static_cast<std::size_t>(j)];
+    held.push_back({j, g.H_A, g.H_B, g.rate});
+  }
+  const auto product = [&](const Row& r, const Row& s) {  // H_r M^-1 H_s'
+    const Constraint<D>&first = scene_.constraints[static_cast<std::size_t>(r.constraint)],
+          &second = scene_.constraints[static_cast<std::size_t>(s.constraint)];
     double sum = 0;
-    for (const auto& [body, H] : {std::pair(first.a, &g.H_A), std::pair(first.b, &g.H_B)}) {
-      for (const auto& [other, K] : {std::pair(second.a, &f.H_A), std::pair(second.b, &f.H_B)}) {
+    for (const auto& [body, H] : {std::pair(first.a, &r.H_A), std::pair(first.b, &r.H_B)}) {
+      for (const auto& [other, K] : {std::pair(second.a, &s.H_A), std::pair(second.b, &s.H_B)}) {
         if (body != other) continue;
         for (int l = 0; l < place(body).nv; ++l) sum += (*H)[l] * inverse_mass(body, l) * (*K)[l];
       }
     }
     return sum;
   };
-  Eigen::MatrixXd A(k, k), coupling(m, k), answer(m, k);
-  Vector rates(k);
-  for (int c = 0; c < k; ++c) {
-    const auto& g = gaps[static_cast<std::size_t>(c)];
-    rates[c] = g.hdot;
-    for (int j = 0; j < m; ++j)
-      coupling(j, c) = product(joints[static_cast<std::size_t>(j)], bodies.gaps[static_cast<std::size_t>(joints[static_cast<std::size_t>(j)])],
-                               touching[static_cast<std::size_t>(c)], g);
+  const int n = static_cast<int>(rows.size()), m = static_cast<int>(held.size());
+  Eigen::MatrixXd A(n, n), coupling(m, n), answer(m, n);
+  Vector rates(n);
+  for (int c = 0; c < n; ++c) {
+    rates[c] = rows[static_cast<std::size_t>(c)].rate;
+    for (int d = 0; d < n; ++d) A(c, d) = product(rows[static_cast<std::size_t>(c)], rows[static_cast<std::size_t>(d)]);
+    for (int j = 0; j < m; ++j) coupling(j, c) = product(held[static_cast<std::size_t>(j)], rows[static_cast<std::size_t>(c)]);
     answer.col(c) = coupling.col(c);
-    if (m > 0) {
-      if (has_friction_)
-        answer.col(c) = bodies.lu.solve(coupling.col(c));
-      else
-        bodies.skyline.solve(answer.col(c));
-    }
-  }
-  for (int c = 0; c < k; ++c) {
-    for (int d = 0; d < k; ++d)
-      A(c, d) = product(touching[static_cast<std::size_t>(c)], gaps[static_cast<std::size_t>(c)], touching[static_cast<std::size_t>(d)],
-                        gaps[static_cast<std::size_t>(d)]);
+    if (m == 0) continue;
+    if (has_friction_)
+      answer.col(c) = bodies.lu.solve(coupling.col(c));
+    else
+      bodies.skyline.solve(answer.col(c));
   }
   if (m > 0) A -= coupling.transpose() * answer;
 
   std::vector<Touching> contacts;
   for (const int i : touching) {
     const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
-    contacts.push_back({c.restitution, c.contact_time, c.rest_speed, state.mode.discrete[static_cast<std::size_t>(i)] == kContact});
+    contacts.push_back(
+        {c.restitution, c.contact_time, c.rest_speed, c.friction, state.mode.discrete[static_cast<std::size_t>(i)] == kContact});
   }
-  const FastPhase phase = resolve(scene_.impact_law, A, rates, contacts);
+  const FastPhase phase = resolve(scene_.impact_law, A, rates, contacts, tangents);
   if (!phase.failure.empty()) {
     std::string names;
     for (const int i : touching) names += " " + scene_.constraints[static_cast<std::size_t>(i)].name;
@@ -201,27 +215,32 @@ Transition ContactDae<D>::collide(DaeState& state, Bodies& bodies, const EventLo
   double energy = energy_of(state.t, bodies);
   for (const MicroEvent& event : phase.events) {
     const int i = touching[static_cast<std::size_t>(event.contact)];
-    const GapValue<double, D>& g = gaps[static_cast<std::size_t>(event.contact)];
-    log({state.t, scene_.constraints[static_cast<std::size_t>(i)].name, kFree, kCollision, g.h, event.rate_before, event.rate_after, event.impulse, energy,
-         energy + event.work});
+    const double gap = gaps[static_cast<std::size_t>(event.contact)];
+    log({state.t, scene_.constraints[static_cast<std::size_t>(i)].name, kFree, kCollision, gap, event.rate_before, event.rate_after,
+         event.impulse, energy, energy + event.work});
     energy += event.work;
   }
-  const auto push = [&](int i, const GapValue<double, D>& g, double impulse) {
-    const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
-    for (int l = 0; l < place(c.a).nv; ++l) state.x[place(c.a).v + l] += inverse_mass(c.a, l) * g.H_A[l] * impulse;
-    for (int l = 0; l < place(c.b).nv; ++l) state.x[place(c.b).v + l] += inverse_mass(c.b, l) * g.H_B[l] * impulse;
+  const auto push = [&](const Row& row, double impulse) {
+    const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(row.constraint)];
+    for (int l = 0; l < place(c.a).nv; ++l) state.x[place(c.a).v + l] += inverse_mass(c.a, l) * row.H_A[l] * impulse;
+    for (int l = 0; l < place(c.b).nv; ++l) state.x[place(c.b).v + l] += inverse_mass(c.b, l) * row.H_B[l] * impulse;
   };
-  for (int c = 0; c < k; ++c) push(touching[static_cast<std::size_t>(c)], gaps[static_cast<std::size_t>(c)], phase.impulses[c]);
+  for (int c = 0; c < n; ++c) {
+    push(rows[static_cast<std::size_t>(c)], phase.impulses[c]);
+    if (scene_.with_audit) state.x[works_ + rows[static_cast<std::size_t>(c)].constraint] += phase.works[c];
+  }
   const Vector reaction = m > 0 ? Vector(-answer * phase.impulses) : Vector(0);
-  for (int j = 0; j < m; ++j) push(joints[static_cast<std::size_t>(j)], bodies.gaps[static_cast<std::size_t>(joints[static_cast<std::size_t>(j)])], reaction[j]);
+  for (int j = 0; j < m; ++j) {  // a driven joint works while it is struck
+    push(held[static_cast<std::size_t>(j)], reaction[j]);
+    if (scene_.with_audit) state.x[works_ + joints[static_cast<std::size_t>(j)]] += reaction[j] * held[static_cast<std::size_t>(j)].rate;
+  }
   for (int c = 0; c < k; ++c) {
     const int i = touching[static_cast<std::size_t>(c)];
     int& mode = state.mode.discrete[static_cast<std::size_t>(i)];
-    const int next = phase.is_held[static_cast<std::size_t>(c)] ? kContact : kLeaving;
-    if (scene_.with_audit) state.x[works_ + i] += phase.works[c];
+    const int next = phase.is_held[static_cast<std::size_t>(c)] ? kContact : kFree;
     const int from = phase.impulses[c] > 0 && mode != kContact ? kCollision : mode;
-    if (shown(from) != shown(next)) {
-      log({state.t, scene_.constraints[static_cast<std::size_t>(i)].name, shown(from), shown(next), gaps[static_cast<std::size_t>(c)].h, phase.rates[c],
+    if (from != next) {
+      log({state.t, scene_.constraints[static_cast<std::size_t>(i)].name, from, next, gaps[static_cast<std::size_t>(c)], phase.rates[c],
            phase.rates[c], phase.impulses[c], energy, energy});
     }
     mode = next;
@@ -272,20 +291,21 @@ Transition ContactDae<D>::distribute(DaeState& state, Bodies& bodies, const Even
       const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
       const bool is_active = trial.discrete[static_cast<std::size_t>(i)] == kContact;
       const double lightness = inverse_mass(c.a, 0) + inverse_mass(c.b, 0);
-      const double bad = is_active ? 0.5 * kAccelerationTolerance - bodies.lambda[i] * lightness : -acceleration(i, bodies) - kAccelerationTolerance;
+      const double bad =
+          is_active ? 0.5 * kAccelerationTolerance - bodies.lambda[i] * lightness : -acceleration(i, bodies) - kAccelerationTolerance;
       if (bad <= 0 || (worst >= 0 && (takes_first || bad <= violation))) continue;
       worst = i, violation = bad;
     }
     if (worst < 0) break;
     int& mode = trial.discrete[static_cast<std::size_t>(worst)];
-    mode = mode == kContact ? kLeaving : kContact;
+    mode = mode == kContact ? kFree : kContact;
     solve();
   }
   if (trial == state.mode) return {};
   const double energy = energy_of(state.t, bodies);
   for (const int i : candidates) {
     const int from = state.mode.discrete[static_cast<std::size_t>(i)], to = trial.discrete[static_cast<std::size_t>(i)];
-    if (shown(from) == shown(to)) continue;
+    if (from == to) continue;
     report(state, i, from, to, bodies, gap_of(i, state.t, bodies).hdot, 0, energy, log);
   }
   state.mode = trial;

@@ -2,8 +2,9 @@
 #pragma once
 
 // clang-format off: the alignment in core/eigen.hpp must stand before any header of Eigen
-#include "tenon/core/eigen.hpp"
 #include <unsupported/Eigen/AutoDiff>
+
+#include "tenon/core/eigen.hpp"
 // clang-format on
 
 namespace tenon::contact {

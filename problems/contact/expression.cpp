@@ -21,10 +21,9 @@ struct Function {
 
 const std::map<std::string, Function>& functions() {
   static const std::map<std::string, Function> table{
-      {"sin", {Op::sine, 1}},       {"cos", {Op::cosine, 1}},     {"tan", {Op::tangent, 1}},
-      {"sqrt", {Op::root, 1}},      {"exp", {Op::exponential, 1}}, {"log", {Op::logarithm, 1}},
-      {"abs", {Op::magnitude, 1}},  {"tanh", {Op::hyperbolic_tangent, 1}}, {"atan", {Op::arc_tangent, 1}},
-      {"floor", {Op::floor, 1}},    {"min", {Op::minimum, 2}},    {"max", {Op::maximum, 2}},
+      {"sin", {Op::sine, 1}},         {"cos", {Op::cosine, 1}},    {"tan", {Op::tangent, 1}},   {"sqrt", {Op::root, 1}},
+      {"exp", {Op::exponential, 1}},  {"log", {Op::logarithm, 1}}, {"abs", {Op::magnitude, 1}}, {"tanh", {Op::hyperbolic_tangent, 1}},
+      {"atan", {Op::arc_tangent, 1}}, {"floor", {Op::floor, 1}},   {"min", {Op::minimum, 2}},   {"max", {Op::maximum, 2}},
       {"if", {Op::choose, 3}},
   };
   return table;
@@ -73,22 +72,30 @@ class Parser {
   void sum() {
     product();
     for (;;) {
-      if (take('+')) product(), push({Op::add}, 2);
-      else if (take('-')) product(), push({Op::subtract}, 2);
-      else return;
+      if (take('+'))
+        product(), push({Op::add}, 2);
+      else if (take('-'))
+        product(), push({Op::subtract}, 2);
+      else
+        return;
     }
   }
   void product() {
     sign();
     for (;;) {
-      if (take('*')) sign(), push({Op::multiply}, 2);
-      else if (take('/')) sign(), push({Op::divide}, 2);
-      else return;
+      if (take('*'))
+        sign(), push({Op::multiply}, 2);
+      else if (take('/'))
+        sign(), push({Op::divide}, 2);
+      else
+        return;
     }
   }
   void sign() {
-    if (take('-')) sign(), push({Op::negate}, 1);
-    else power();
+    if (take('-'))
+      sign(), push({Op::negate}, 1);
+    else
+      power();
   }
   void power() {
     atom();

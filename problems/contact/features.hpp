@@ -15,6 +15,9 @@ inline Point<double, 2> outward_normal(const Point<double, 2>& a, const Point<do
   return {along[1], -along[0]};
 }
 
+/// A point within this share of an edge's length beyond its end is still over the edge: corners that stand on corners.
+inline constexpr double kCorner = 1e-6;
+
 /// The gap between the point `a` of body A and the feature of the shape that is nearest to `p`, the same point in body B's axes.
 inline Gap<2> nearest_feature(const Constraint<2>& c, const Point<double, 2>& p) {
   Gap<2> gap = c.gap;
@@ -41,12 +44,12 @@ inline Gap<2> nearest_feature(const Constraint<2>& c, const Point<double, 2>& p)
   }
   if (n > 2 && highest <= 0) return face(vertices[high_edge], outward_normal(vertices[high_edge], vertices[(high_edge + 1) % n]));
   const Point<double, 2>&v = vertices[near_edge], &w = vertices[(near_edge + 1) % n];
-  if (along > 0 && along < 1) {
+  if (along > -kCorner && along < 1 + kCorner) {
     const Point<double, 2> normal = outward_normal(v, w);
     return face(v, n == 2 && normal.dot(p - v) < 0 ? Point<double, 2>(-normal) : normal);
   }
   gap.kind = GapKind::point_point;
-  gap.b = along <= 0 ? v : w;
+  gap.b = along < 0.5 ? v : w;
   return gap;
 }
 

@@ -23,8 +23,8 @@ const std::vector<std::string>& force_variables() {
 }
 
 template <class S, int D>
-ForceValue<S, D> evaluate(const Force<D>& force, double t, const Positions<S, D>& q_a, const Velocities<S, D>& v_a, const Positions<S, D>& q_b,
-                          const Velocities<S, D>& v_b) {
+ForceValue<S, D> evaluate(const Force<D>& force, double t, const Positions<S, D>& q_a, const Velocities<S, D>& v_a,
+                          const Positions<S, D>& q_b, const Velocities<S, D>& v_b) {
   using std::sqrt;
   ForceValue<S, D> out;
   const Pose<S, D> A(q_a, v_a), B(q_b, v_b);
@@ -68,7 +68,8 @@ ForceValue<S, D> evaluate(const Force<D>& force, double t, const Positions<S, D>
       if (force.kind == ForceKind::expression) {
         std::array<S, 7> variables;
         variables[0] = S(t);
-        for (int i = 0; i < 3; ++i) variables[static_cast<std::size_t>(1 + i)] = q_a[i], variables[static_cast<std::size_t>(4 + i)] = v_a[i];
+        for (int i = 0; i < 3; ++i)
+          variables[static_cast<std::size_t>(1 + i)] = q_a[i], variables[static_cast<std::size_t>(4 + i)] = v_a[i];
         scale = force.expression.template evaluate<S>(variables);
       } else if (force.frequency != 0) {
         scale = S(std::sin(2 * std::numbers::pi * force.frequency * t + force.phase));

@@ -29,9 +29,9 @@ struct Gap {
 
 template <class S, int D>
 struct GapValue {
-  S h, hdot, bias;               // h'' = H vdot + bias
-  S rate;                        // H v: hdot less what the drive adds
-  Velocities<S, D> H_A, H_B;     // gradients
+  S h, hdot, bias;                 // h'' = H vdot + bias
+  S rate;                          // H v: hdot less what the drive adds
+  Velocities<S, D> H_A, H_B;       // gradients
   Point<S, D> normal, at_a, at_b;  // unit, from B to A; arms from either body's centre to the place of contact
 };
 

@@ -16,7 +16,9 @@ double angle_ratio(double zeta) {
 
 }  // namespace
 
-double restitution_of(double zeta) { return std::exp(-2 * zeta * angle_ratio(zeta)); }
+double restitution_of(double zeta) {
+  return std::exp(-2 * zeta * angle_ratio(zeta));
+}
 
 double damping_ratio_of(double restitution) {
   if (restitution >= 1) return 0;

@@ -2,8 +2,8 @@
 //
 // A linear law beta1 = 2 zeta w, beta0 = w^2 released at h'' = 0 gives the restitution e(zeta); users state e and a contact time.
 //
-//     e   = exp(-2 zeta acos(zeta) / sqrt(1 - zeta^2))    zeta < 1;    e^-2 at 1;    the same with acosh and sqrt(zeta^2 - 1) above      (12)
-//     t_c = 2 acos(zeta) / (w sqrt(1 - zeta^2))                                                                                         (13)
+//     e   = exp(-2 zeta acos(zeta) / sqrt(1 - zeta^2))    zeta < 1;    e^-2 at 1;    the same with acosh and sqrt(zeta^2 - 1) above (12)
+//     t_c = 2 acos(zeta) / (w sqrt(1 - zeta^2)) (13)
 #pragma once
 
 namespace tenon::contact {

@@ -18,9 +18,9 @@ template <int D>
 struct Body {
   std::string name;
   int freedoms = 3;
-  double mass = 1;                                               // kg
-  Eigen::Matrix<double, D == 2 ? 1 : 3, 1> inertia;              // kg m^2, about the centre; in space about the body's axes
-  Positions<double, D> q;                                        // at the start; those it has not are fixed
+  double mass = 1;                                   // kg
+  Eigen::Matrix<double, D == 2 ? 1 : 3, 1> inertia;  // kg m^2, about the centre; in space about the body's axes
+  Positions<double, D> q;                            // at the start; those it has not are fixed
   Velocities<double, D> v;
 
   Body() {
@@ -35,9 +35,9 @@ struct Body {
 /// (counter-clockwise); in space a half-space, an edge with round ends (two vertices) or a box (its centre and half its sides).
 template <int D>
 struct Convex {
-  std::vector<Point<double, D>> vertices;                        // in the body's axes
-  Point<double, D> normal = Point<double, D>::Zero();            // of a face without end
-  Point<double, D> half = Point<double, D>::Zero();              // of a box
+  std::vector<Point<double, D>> vertices;              // in the body's axes
+  Point<double, D> normal = Point<double, D>::Zero();  // of a face without end
+  Point<double, D> half = Point<double, D>::Zero();    // of a box
   bool is_face() const { return normal.squaredNorm() > 0; }
   bool is_box() const { return half.squaredNorm() > 0; }
 };
@@ -50,19 +50,19 @@ struct Constraint {
   std::string name;
   ConstraintKind kind = ConstraintKind::contact;
   int a = kWorld, b = kWorld;
-  Gap<D> gap;                // as it stands for a joint, a rope or a ball on a ball; else its kind, b, n and offset follow from `shape`
-  Convex<D> shape;           // of body B; without vertices the gap is what it is
-  double radius_a = 0;       // m: of the ball that A is
-  double radius = 0;         // m: of both together
+  Gap<D> gap;           // as it stands for a joint, a rope or a ball on a ball; else its kind, b, n and offset follow from `shape`
+  Convex<D> shape;      // of body B; without vertices the gap is what it is
+  double radius_a = 0;  // m: of the ball that A is
+  double radius = 0;    // m: of both together
 
-  Law law;                   // of the contact in scene time: alpha
-  bool is_two_scale = true;  // collisions in a fast phase of their own
-  double restitution = 1;    // of a collision, in [0, 1]
-  double contact_time = 1e-3;  // s, of a collision: how long its fast phase lasts
-  double rest_speed = 1e-3;  // m/s: slower rebounds stay in contact
+  Law law;                          // of the contact in scene time: alpha
+  bool is_two_scale = true;         // collisions in a fast phase of their own
+  double restitution = 1;           // of a collision, in [0, 1]
+  double contact_time = 1e-3;       // s, of a collision: how long its fast phase lasts
+  double rest_speed = 1e-3;         // m/s: slower rebounds stay in contact
   double rest_acceleration = 1e-2;  // m/s^2: of a one-law contact, with rest_speed
-  double friction = 0;       // Coulomb's mu
-  double friction_speed = 1e-3;  // m/s: mu tanh(v_t / friction_speed)
+  double friction = 0;              // Coulomb's mu
+  double friction_speed = 1e-3;     // m/s: mu tanh(v_t / friction_speed)
 
   bool is_joint() const { return kind == ConstraintKind::joint; }
 };
@@ -76,11 +76,11 @@ struct Force {
   ForceKind kind = ForceKind::applied;
   int a = kWorld, b = kWorld;
   Point<double, D> at_a = Point<double, D>::Zero(), at_b = Point<double, D>::Zero();  // anchors, in the bodies' axes
-  double stiffness = 0, damping = 0, rest = 0;               // spring N/m, N s/m, m; torsion N m/rad, N m s/rad, rad
-  Point<double, D> force = Point<double, D>::Zero();         // N, in world axes
-  double torque = 0;                                         // N m, planar
-  double frequency = 0, phase = 0;                           // Hz, rad: the force times sin(2 pi f t + phase); constant where f = 0
-  Expression expression;                                     // times the direction in `force`, or `torque`
+  double stiffness = 0, damping = 0, rest = 0;        // spring N/m, N s/m, m; torsion N m/rad, N m s/rad, rad
+  Point<double, D> force = Point<double, D>::Zero();  // N, in world axes
+  double torque = 0;                                  // N m, planar
+  double frequency = 0, phase = 0;                    // Hz, rad: the force times sin(2 pi f t + phase); constant where f = 0
+  Expression expression;                              // times the direction in `force`, or `torque`
 
   /// What it does that no potential accounts for.
   bool has_work() const { return kind == ForceKind::applied || kind == ForceKind::drag || kind == ForceKind::expression || damping != 0; }
@@ -96,8 +96,7 @@ struct Scene {
   std::vector<Force<D>> forces;
   Point<double, D> gravity = Point<double, D>::Zero();  // m/s^2
   ImpactLaw impact_law = ImpactLaw::sequential;
-  bool with_audit = true;     // work of every multiplier and force as states
-  bool records_fast_phase = false;  // every micro-event of a fast phase in the events, not its ends alone
+  bool with_audit = true;  // work of every multiplier and force as states
 };
 
 }  // namespace tenon::contact

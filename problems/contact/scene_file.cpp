@@ -40,7 +40,8 @@ void check_parameters(const std::string& text, const std::string& file, const st
     const std::string key = entry.substr(0, entry.find('='));
     if (key.empty() || key.find('.') != std::string::npos || std::count(names.begin(), names.end(), key) > 0) continue;
     throw InputError({"--set " + entry, 0, 0},
-                     names.empty() ? "the scene has no parameters" : fmt::format("unknown parameter '{}', the nearest is '{}'", key, nearest_name(key, names)),
+                     names.empty() ? "the scene has no parameters"
+                                   : fmt::format("unknown parameter '{}', the nearest is '{}'", key, nearest_name(key, names)),
                      names.empty() ? "key.path=value" : fmt::format("one of {}, or key.path=value", fmt::join(names, ", ")));
   }
 }
@@ -61,7 +62,8 @@ SceneFile parse_scene(const std::string& text, const std::string& file, const st
   std::string space = "planar";
   if (const auto simulation = root.table("simulation")) {
     space = simulation->text("space", space);
-    if (space != "planar" && space != "spatial") throw InputError(simulation->position("space"), "unknown space '" + space + "'", "planar or spatial");
+    if (space != "planar" && space != "spatial")
+      throw InputError(simulation->position("space"), "unknown space '" + space + "'", "planar or spatial");
     SimulationSettings& s = out.simulation;
     s.duration = positive(values, *simulation, "duration", s.duration);
     s.output_step = positive(values, *simulation, "output_step", s.output_step);
@@ -98,7 +100,8 @@ SceneFile load_scene(const std::string& name_or_path, const std::vector<std::str
   for (const EmbeddedFile& file : embedded_scenes()) {
     if (file.name == name_or_path) return parse_scene(std::string(file.text), name_or_path, overrides);
   }
-  const bool is_path = name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml") || std::filesystem::exists(name_or_path);
+  const bool is_path =
+      name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml") || std::filesystem::exists(name_or_path);
   if (!is_path) {
     throw std::invalid_argument(fmt::format("unknown scene '{}', the nearest is '{}' (expected one of {}, or a TOML file)", name_or_path,
                                             nearest_name(name_or_path, builtin_scenes()), fmt::join(builtin_scenes(), ", ")));

@@ -13,17 +13,19 @@ namespace tenon::contact {
 
 namespace {
 
-constexpr double kOpenJoint = 1e-6;       // m or rad: a joint further apart cannot be closed by rounding
-constexpr double kDefaultPole = 50;       // 1/s: of a contact's law after its collision, and of joints
+constexpr double kOpenJoint = 1e-6;  // m or rad: a joint further apart cannot be closed by rounding
+constexpr double kDefaultPole = 5;   // 1/s: of a contact's law after its collision, and of joints
 
-const std::vector<std::string> kSimulationKeys{"space", "gravity", "duration", "output_step", "rtol", "atol", "integrator", "impact_law", "audit",
-                                               "record_fast_phase"};
-const std::vector<std::string> kBodyKeys{"count", "name", "kind", "mass", "inertia", "position", "angle", "quaternion", "velocity", "omega"};
-const std::vector<std::string> kShapeKeys{"count", "name", "body", "type", "at", "radius", "point", "normal", "from", "to", "vertices", "size", "angle"};
-const std::vector<std::string> kLawKeys{"restitution", "contact_time", "collision", "alpha", "one_law", "friction", "friction_speed", "rest_speed",
-                                        "rest_acceleration"};
-const std::vector<std::string> kForceKeys{"count", "name", "type", "between", "on", "from", "to", "stiffness", "damping", "rest", "force", "torque",
-                                          "frequency", "phase", "expression"};
+const std::vector<std::string> kSimulationKeys{"space", "gravity",    "duration",   "output_step", "rtol",
+                                               "atol",  "integrator", "impact_law", "audit"};
+const std::vector<std::string> kBodyKeys{"count",    "name",  "kind",       "mass",     "inertia",
+                                         "position", "angle", "quaternion", "velocity", "omega"};
+const std::vector<std::string> kShapeKeys{"count",  "name", "body", "type",     "at",   "radius", "point",
+                                          "normal", "from", "to",   "vertices", "size", "angle"};
+const std::vector<std::string> kLawKeys{"restitution",    "contact_time", "collision",        "alpha", "one_law", "friction",
+                                        "friction_speed", "rest_speed",   "rest_acceleration"};
+const std::vector<std::string> kForceKeys{"count",   "name", "type",  "between", "on",        "from",  "to",        "stiffness",
+                                          "damping", "rest", "force", "torque",  "frequency", "phase", "expression"};
 
 std::vector<std::string> with(std::vector<std::string> keys, const std::vector<std::string>& more) {
   keys.insert(keys.end(), more.begin(), more.end());
@@ -52,7 +54,6 @@ Scene<D> SceneReader<D>::read() {
     scene_.gravity = point(*simulation, "gravity", scene_.gravity);
     if (simulation->has("impact_law")) scene_.impact_law = impact_law_of(*simulation, values_.text(*simulation, "impact_law"));
     scene_.with_audit = simulation->flag("audit", true);
-    scene_.records_fast_phase = simulation->flag("record_fast_phase", false);
   }
   const auto each = [&](const std::string& key, const std::vector<std::string>& known, auto reader) {
     for (const Table& table : root_.tables(key, known)) {
@@ -67,7 +68,9 @@ Scene<D> SceneReader<D>::read() {
   each("body", kBodyKeys, &SceneReader::read_body);
   if (scene_.bodies.empty()) throw InputError(root_.position(), "a scene without bodies", "[[body]]");
   each("shape", kShapeKeys, &SceneReader::read_shape);
-  each("joint", with({"count", "name", "type", "between", "at", "from", "to", "length", "axis", "lock", "pole", "amplitude", "frequency", "phase"}, kLawKeys),
+  each("joint",
+       with({"count", "name", "type", "between", "at", "from", "to", "length", "axis", "lock", "pole", "amplitude", "frequency", "phase"},
+            kLawKeys),
        &SceneReader::read_joint);
   each("contact", with({"count", "name", "between"}, kLawKeys), &SceneReader::read_contact);
   each("force", kForceKeys, &SceneReader::read_force);
@@ -156,16 +159,19 @@ void SceneReader<D>::read_body(const Table& table) {
   Body<D> body;
   body.name = values_.text(table, "name");
   for (const Body<D>& other : scene_.bodies) {
-    if (other.name == body.name || body.name == "world") throw InputError(table.position("name"), "the name '" + body.name + "' stands twice", "another name");
+    if (other.name == body.name || body.name == "world")
+      throw InputError(table.position("name"), "the name '" + body.name + "' stands twice", "another name");
   }
   const std::string kind = table.text("kind", "rigid");
-  const std::vector<std::string> kinds = D == 2 ? std::vector<std::string>{"line", "point", "rigid"} : std::vector<std::string>{"point", "rigid"};
+  const std::vector<std::string> kinds =
+      D == 2 ? std::vector<std::string>{"line", "point", "rigid"} : std::vector<std::string>{"point", "rigid"};
   if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) reject_name(table, "kind", "kind of body", kind, kinds);
   body.freedoms = kind == "line" ? 1 : kind == "point" ? D : D == 2 ? 3 : 6;
   body.mass = positive(table, "mass");
   const bool turns = kind == "rigid";
   for (const char* key : {"inertia", "angle", "quaternion", "omega"}) {
-    if (!turns && table.has(key)) throw InputError(table.position(key), fmt::format("a {} does not turn, '{}' means nothing", kind, key), "kind = \"rigid\"");
+    if (!turns && table.has(key))
+      throw InputError(table.position(key), fmt::format("a {} does not turn, '{}' means nothing", kind, key), "kind = \"rigid\"");
   }
   const Vec position = point(table, "position", Vec::Zero()), velocity = point(table, "velocity", Vec::Zero());
   body.q.template head<D>() = position;
@@ -187,7 +193,8 @@ void SceneReader<D>::read_body(const Table& table) {
     const Vec omega = point(table, "omega", Vec::Zero());
     body.v.template tail<3>() = omega;
   }
-  if (body.freedoms == 1 && (position[1] != 0 || velocity[1] != 0)) throw InputError(table.position("position"), "a body on a line has x alone", "[x, 0]");
+  if (body.freedoms == 1 && (position[1] != 0 || velocity[1] != 0))
+    throw InputError(table.position("position"), "a body on a line has x alone", "[x, 0]");
   scene_.bodies.push_back(body);
 }
 
@@ -207,7 +214,8 @@ void SceneReader<D>::read_law(const Table& table, Constraint<D>& c) const {
   if (table.has("collision")) {
     if (table.has("restitution")) throw InputError(table.position("collision"), "both 'collision' and 'restitution'", "one of them");
     const std::vector<double> beta = values_.numbers(table, "collision", 2);
-    if (!(beta[0] > 0 && beta[1] >= 0)) throw InputError(table.position("collision"), "a collision law without stiffness", "[beta0 > 0, beta1 >= 0]");
+    if (!(beta[0] > 0 && beta[1] >= 0))
+      throw InputError(table.position("collision"), "a collision law without stiffness", "[beta0 > 0, beta1 >= 0]");
     const Law collision{beta[0], beta[1], 0};
     c.restitution = restitution_of(beta[1] / (2 * std::sqrt(beta[0])));
     c.contact_time = contact_time_of(collision);
@@ -219,7 +227,8 @@ void SceneReader<D>::read_law(const Table& table, Constraint<D>& c) const {
 }
 
 template <int D>
-Constraint<D>& SceneReader<D>::add_joint_row(const Table& table, const std::string& name, GapKind kind, int a, int b, const Vec& at_a, const Vec& at_b) {
+Constraint<D>& SceneReader<D>::add_joint_row(const Table& table, const std::string& name, GapKind kind, int a, int b, const Vec& at_a,
+                                             const Vec& at_b) {
   Constraint<D> c;
   c.name = name;
   c.kind = ConstraintKind::joint;
@@ -250,7 +259,8 @@ void SceneReader<D>::read_joint(const Table& table) {
     const Vec from = point(table, "from", pose_of(a).p), to = point(table, "to", pose_of(b).p);
     Constraint<D>& c = add_joint_row(table, name, GapKind::point_point, a, b, from, to);
     c.gap.offset = table.has("length") ? positive(table, "length") : (from - to).norm();
-    if (!(c.gap.offset > 0) || !((from - to).norm() > 0)) throw InputError(table.position(), "both ends are at one place", "ends that are apart");
+    if (!(c.gap.offset > 0) || !((from - to).norm() > 0))
+      throw InputError(table.position(), "both ends are at one place", "ends that are apart");
     if (type == "rope") {
       c.kind = ConstraintKind::contact;
       c.gap.sign = -1;
@@ -272,7 +282,8 @@ void SceneReader<D>::read_joint(const Table& table) {
       c.gap.n = pose_of(b).R.transpose() * Vec(-axis[1], axis[0]);
       if (table.flag("lock", false)) {
         Constraint<D>& angle = add_joint_row(table, name + "_angle", GapKind::angle, a, b, Vec::Zero(), Vec::Zero());
-        angle.gap.offset = (a == kWorld ? 0 : scene_.bodies[static_cast<std::size_t>(a)].q[2]) - (b == kWorld ? 0 : scene_.bodies[static_cast<std::size_t>(b)].q[2]);
+        angle.gap.offset = (a == kWorld ? 0 : scene_.bodies[static_cast<std::size_t>(a)].q[2]) -
+                           (b == kWorld ? 0 : scene_.bodies[static_cast<std::size_t>(b)].q[2]);
       }
       return;
     }
@@ -297,7 +308,9 @@ void SceneReader<D>::read_contact(const Table& table) {
   read_law(table, pattern);
   const std::vector<std::string> names = values_.texts(table, "between", 2);
   const auto found = contacts_between(shapes_of(table, names[0]), shapes_of(table, names[1]), pattern);
-  if (found.empty()) throw InputError(table.position("between"), "'" + names[0] + "' and '" + names[1] + "' cannot touch", "a ball or corner on one side at least, on two bodies");
+  if (found.empty())
+    throw InputError(table.position("between"), "'" + names[0] + "' and '" + names[1] + "' cannot touch",
+                     "a ball or corner on one side at least, on two bodies");
   scene_.constraints.insert(scene_.constraints.end(), found.begin(), found.end());
   places_.resize(scene_.constraints.size(), table.position());
 }
@@ -331,7 +344,8 @@ void SceneReader<D>::read_force(const Table& table) {
     try {
       force.expression = Expression(values_.with_values(table.text("expression")), force_variables<D>());
     } catch (const std::invalid_argument& error) {
-      throw InputError(table.position("expression"), error.what(), "an expression in t, the body's pose and motion, and the scene's parameters");
+      throw InputError(table.position("expression"), error.what(),
+                       "an expression in t, the body's pose and motion, and the scene's parameters");
     }
   }
   scene_.forces.push_back(force);
@@ -347,7 +361,12 @@ void SceneReader<D>::check_start() const {
     const Constraint<D>& c = scene_.constraints[i];
     const GapValue<double, D> g = dae.gap(static_cast<int>(i), state.t, state.x, workspace);
     if (c.is_joint() && std::abs(g.h) > kOpenJoint) {
-      throw InputError(places_[i], fmt::format("joint '{}' is open by {:.3g} at the start and cannot close", c.name, g.h), "bodies where the joint holds them");
+      throw InputError(places_[i], fmt::format("joint '{}' is open by {:.3g} at the start and cannot close", c.name, g.h),
+                       "bodies where the joint holds them");
+    }
+    if (c.is_joint() && std::abs(g.hdot) > kOpenJoint) {
+      throw InputError(places_[i], fmt::format("joint '{}' opens at {:.3g} per second at the start", c.name, g.hdot),
+                       "bodies that move as the joint lets them");
     }
     if (!c.is_joint() && g.h < -kTouching) {
       throw InputError(places_[i], fmt::format("contact '{}' overlaps at the start by {:.3g} m", c.name, -g.h), "bodies apart or touching");

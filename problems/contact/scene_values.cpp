@@ -45,7 +45,9 @@ int SceneValues::count(const Table& table) const {
   return static_cast<int>(count);
 }
 
-double SceneValues::number(const Table& table, const std::string& key) const { return evaluate(table, key, table.number_or_text(key)); }
+double SceneValues::number(const Table& table, const std::string& key) const {
+  return evaluate(table, key, table.number_or_text(key));
+}
 
 std::vector<double> SceneValues::numbers(const Table& table, const std::string& key, std::size_t size) const {
   std::vector<double> list;
@@ -66,7 +68,9 @@ std::string SceneValues::replaced(const Table& table, const std::string& key, st
   return text;
 }
 
-std::string SceneValues::text(const Table& table, const std::string& key) const { return replaced(table, key, table.text(key)); }
+std::string SceneValues::text(const Table& table, const std::string& key) const {
+  return replaced(table, key, table.text(key));
+}
 
 std::vector<std::string> SceneValues::texts(const Table& table, const std::string& key, std::size_t size) const {
   std::vector<std::string> list;

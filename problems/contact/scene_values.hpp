@@ -38,7 +38,7 @@ class SceneValues {
   double evaluate(const toml_file::Table& table, const std::string& key, const toml_file::Table::NumberOrText& value) const;
   std::string replaced(const toml_file::Table& table, const std::string& key, std::string text) const;
 
-  std::vector<std::string> names_;   // of the parameters that are numbers, after i
+  std::vector<std::string> names_;  // of the parameters that are numbers, after i
   std::vector<double> values_;
   std::vector<std::pair<std::string, std::string>> words_;  // parameters that are texts
 };

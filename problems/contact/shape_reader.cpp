@@ -51,14 +51,16 @@ bool is_convex(const std::vector<Point<double, 2>>& vertices) {
 
 template <int D>
 void SceneReader<D>::read_shape(const Table& table) {
-  static const std::vector<std::string> types = D == 2 ? std::vector<std::string>{"point", "disc", "half-plane", "segment", "capsule", "polygon", "box"}
-                                                       : std::vector<std::string>{"point", "sphere", "half-space", "capsule", "box"};
+  static const std::vector<std::string> types =
+      D == 2 ? std::vector<std::string>{"point", "disc", "half-plane", "segment", "capsule", "polygon", "box"}
+             : std::vector<std::string>{"point", "sphere", "half-space", "capsule", "box"};
   Shape<D> shape;
   shape.body = body_of(table, "body", values_.text(table, "body", "world"));
   shape.name = values_.text(table, "name", shape.body == kWorld ? "world" : scene_.bodies[static_cast<std::size_t>(shape.body)].name);
   const std::string type = table.text("type");
   if (std::find(types.begin(), types.end(), type) == types.end()) {
-    throw InputError(table.position("type"), fmt::format("unknown type of shape '{}', the nearest is '{}'", type, nearest_name(type, types)),
+    throw InputError(table.position("type"),
+                     fmt::format("unknown type of shape '{}', the nearest is '{}'", type, nearest_name(type, types)),
                      fmt::format("one of {}", fmt::join(types, ", ")));
   }
   const Vec at = point(table, "at", Vec::Zero());
@@ -90,10 +92,13 @@ void SceneReader<D>::read_shape(const Table& table) {
       }
     } else if constexpr (D == 2) {
       const std::vector<double> list = values_.numbers(table, "vertices");
-      if (list.size() < 6 || list.size() % 2 != 0) throw InputError(table.position("vertices"), "no polygon", "[x1, y1, x2, y2, x3, y3, ...]");
+      if (list.size() < 6 || list.size() % 2 != 0)
+        throw InputError(table.position("vertices"), "no polygon", "[x1, y1, x2, y2, x3, y3, ...]");
       for (std::size_t k = 0; k + 1 < list.size(); k += 2) vertices.push_back({list[k], list[k + 1]});
       if (signed_area(vertices) < 0) std::reverse(vertices.begin(), vertices.end());
-      if (!is_convex(vertices)) throw InputError(table.position("vertices"), "the polygon is not convex", "corners in order, turning one way; several shapes for a hollow one");
+      if (!is_convex(vertices))
+        throw InputError(table.position("vertices"), "the polygon is not convex",
+                         "corners in order, turning one way; several shapes for a hollow one");
       shape.convex.vertices = vertices;
     }
     for (const Vec& v : vertices) shape.balls.push_back({v, 0});

@@ -1,8 +1,8 @@
 // Shapes, and what a pair of them has to keep apart.
 //
-// A shape is a set of balls (corners are balls of radius 0) and a convex with a radius around it. Two shapes touch where a ball of one meets the
-// convex of the other, or two balls meet: corners against faces, ball against ball. In the plane nothing else can touch; in space the crossing of
-// two boxes' edges is left out.
+// A shape is a set of balls (corners are balls of radius 0) and a convex with a radius around it. Two shapes touch where a ball of one
+// meets the convex of the other, or two balls meet: corners against faces, ball against ball. In the plane nothing else can touch; in space
+// the crossing of two boxes' edges is left out.
 #pragma once
 
 #include <string>
@@ -23,8 +23,8 @@ struct Shape {
   std::string name;
   int body = kWorld;
   std::vector<Ball<D>> balls;
-  Convex<D> convex;         // no vertices: none
-  double rounding = 0;      // m: around the convex
+  Convex<D> convex;     // no vertices: none
+  double rounding = 0;  // m: around the convex
 };
 
 /// The gaps between two shapes, as contacts with the law, restitution and friction of `pattern`; numbered where there are several.

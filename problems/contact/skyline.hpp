@@ -39,8 +39,8 @@ class Skyline {
   double& operator()(int i, int j) { return values_[static_cast<std::size_t>(begin_[static_cast<std::size_t>(i)] + j - first(i))]; }
   double operator()(int i, int j) const { return const_cast<Skyline&>(*this)(i, j); }
 
-  /// In place. Returns the number of pivots that fell below `tolerance` of their diagonal entry: the rank's defect. Those rows are given a pivot
-  /// of infinity, which makes their unknown 0.
+  /// In place. Returns the number of pivots that fell below `tolerance` of their diagonal entry: the rank's defect. Those rows are given a
+  /// pivot of infinity, which makes their unknown 0.
   int factorise(double tolerance) {
     int defect = 0;
     for (int i = 0; i < size(); ++i) {

@@ -37,6 +37,7 @@ class SceneDae final : public Dae {
                    VectorRef y) const override;
 
   void guards(const DaeMode& mode, const DaePoint& at, Workspace& workspace, VectorRef values) const override;
+  bool guards_read_derivatives(const DaeMode&) const override { return false; }
   double next_event_time(const DaeState& state) const override;
   Transition transition(DaeState& state, std::span<const int> fired, Workspace& workspace, const EventLog& log) const override;
 

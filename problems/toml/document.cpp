@@ -89,8 +89,8 @@ struct Table::Node {
 namespace {
 
 /// The list under a key, of exactly `size` entries where that is not 0.
-const toml::array& list_of(const Table& table, const toml::node& value, const std::string& path, std::size_t size, const InputError& no_list,
-                           const std::string& key, const std::string& expected) {
+const toml::array& list_of(const Table& table, const toml::node& value, const std::string& path, std::size_t size,
+                           const InputError& no_list, const std::string& key, const std::string& expected) {
   const toml::array* array = value.as_array();
   if (array == nullptr) throw no_list;
   if (size != 0 && array->size() != size) {

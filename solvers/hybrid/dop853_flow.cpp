@@ -66,7 +66,9 @@ class Dop853Flow final : public Flow {
     return Step::collapsed;
   }
 
-  bool interpolate(double t, DaeState& state) override {
+  bool interpolate(double t, DaeState& state) override { return interpolate_state(t, state) && evaluate(t, state.x, state.xdot, state.y); }
+
+  bool interpolate_state(double t, DaeState& state) override {
     state.t = t;
     if (t == end_) {
       state.x = x_next_;
@@ -80,7 +82,7 @@ class Dop853Flow final : public Flow {
       for (int p = kPowers - 1; p >= 0; --p) state.x = (state.x + powers_.col(p)) * ((kPowers - 1 - p) % 2 == 0 ? s : 1 - s);
       state.x += x_;
     }
-    return evaluate(t, state.x, state.xdot, state.y);
+    return true;
   }
 
   bool land(double t, DaeState& state) override {

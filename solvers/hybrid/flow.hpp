@@ -21,7 +21,9 @@ class Flow {
   double begin() const { return begin_; }
   double end() const { return end_; }
 
-  /// t, x, xdot and y at a time within the last step. False where F cannot be solved there.
+  /// t and x at a time within the last step.
+  virtual bool interpolate_state(double t, DaeState& state) = 0;
+  /// And xdot and y. False where F cannot be solved there.
   virtual bool interpolate(double t, DaeState& state) = 0;
   /// The same, as accurate as a step's end is: where an event is, the next mode starts.
   virtual bool land(double t, DaeState& state) { return interpolate(t, state); }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tenon/solvers/hybrid/exact_flow.hpp"
+
 namespace tenon {
 
 namespace {
@@ -19,7 +21,14 @@ bool is_same_time(double a, double b) {
 }  // namespace
 
 HybridIntegrator::HybridIntegrator(const Dae& dae, const IntegratorOptions& options, std::unique_ptr<Flow> flow)
-    : dae_(dae), options_(options), flow_(std::move(flow)), newton_(dae), workspace_(dae.make_workspace()), sample_(initial_state_of(dae)) {
+    : dae_(dae),
+      options_(options),
+      flow_(std::move(flow)),
+      exact_(make_exact_flow(dae)),
+      current_(flow_.get()),
+      newton_(dae),
+      workspace_(dae.make_workspace()),
+      sample_(initial_state_of(dae)) {
   validate(options);
   before_.resize(dae.num_guards());
   after_.resize(dae.num_guards());
@@ -29,10 +38,11 @@ HybridIntegrator::HybridIntegrator(const Dae& dae, const IntegratorOptions& opti
 
 IntegrationResult HybridIntegrator::advance(DaeState& state, double t_end) {
   result_ = {};
-  const long steps = flow_->steps(), rejected = flow_->rejected(), evaluations = flow_->evaluations();
+  const auto steps_taken = [&] { return flow_->steps() + exact_->steps(); };
+  const long steps = steps_taken(), rejected = flow_->rejected(), evaluations = flow_->evaluations();
   const auto finish = [&] {
     left_ = state;
-    result_.steps = flow_->steps() - steps;
+    result_.steps = steps_taken() - steps;
     result_.rejected = flow_->rejected() - rejected;
     result_.evaluations = flow_->evaluations() - evaluations;
     return result_;
@@ -49,11 +59,11 @@ IntegrationResult HybridIntegrator::advance(DaeState& state, double t_end) {
     const double t_clock = dae_.next_event_time(state);
     const double t_limit = std::min(t_end, t_clock);
     if (t_limit > state.t && !is_same_time(t_limit, state.t)) {
-      if (flow_->steps() - steps >= options_.max_steps) {
+      if (steps_taken() - steps >= options_.max_steps) {
         fail(IntegrationStatus::step_limit, state, std::to_string(options_.max_steps) + " steps are used up");
         return finish();
       }
-      switch (flow_->step(t_limit, std::min(options_.max_step, dae_.max_step(state, workspace_)))) {
+      switch (current_->step(t_limit, std::min(options_.max_step, dae_.max_step(state, workspace_)))) {
         case Flow::Step::taken:
           break;
         case Flow::Step::collapsed:
@@ -70,7 +80,7 @@ IntegrationResult HybridIntegrator::advance(DaeState& state, double t_end) {
         if (!write_outputs(state.t) || !emit(state) || !restart(state, crossing.fired) || !emit(state)) return finish();
         continue;
       }
-      if (!flow_->interpolate(flow_->end(), state)) {
+      if (!current_->interpolate(current_->end(), state)) {
         fail(IntegrationStatus::no_consistent_state, state, "no consistent multipliers");
         return finish();
       }
@@ -110,7 +120,9 @@ bool HybridIntegrator::restart(DaeState& state, std::span<const int> fired) {
   if (!settle(state, fired)) return false;
   sample_.mode = state.mode;
   sample_.u = state.u;
-  if (!flow_->restart(state)) return fail(IntegrationStatus::step_collapse, state, "the integrator cannot start");
+  current_ = dae_.has_exact_flow(state.mode) ? exact_.get() : flow_.get();
+  reads_derivatives_ = dae_.guards_read_derivatives(state.mode);
+  if (!current_->restart(state)) return fail(IntegrationStatus::step_collapse, state, "the integrator cannot start");
   evaluate_guards(state, before_);
   for (std::size_t i = 0; i < is_armed_.size(); ++i) is_armed_[i] = before_[static_cast<int>(i)] > 0;
   return true;
@@ -120,8 +132,13 @@ void HybridIntegrator::evaluate_guards(const DaeState& state, Vector& values) {
   if (values.size() > 0) dae_.guards(state.mode, DaePoint(state), workspace_, values);
 }
 
+/// What the guards need of the state at t.
+bool HybridIntegrator::look(double t) {
+  return reads_derivatives_ ? current_->interpolate(t, sample_) : current_->interpolate_state(t, sample_);
+}
+
 double HybridIntegrator::guard_at(double t, int guard) {
-  flow_->interpolate(t, sample_);
+  look(t);
   evaluate_guards(sample_, values_);
   return values_[guard];
 }
@@ -129,11 +146,11 @@ double HybridIntegrator::guard_at(double t, int guard) {
 /// The first guard that falls within the last step, if any does.
 bool HybridIntegrator::find_crossing(Crossing& crossing) {
   if (before_.size() == 0) return false;
-  const double a = flow_->begin(), b = flow_->end();
+  const double a = current_->begin(), b = current_->end();
   double left = a;
   for (int k = 1; k <= kSamples; ++k) {
     const double right = k == kSamples ? b : a + (b - a) * k / kSamples;
-    if (!flow_->interpolate(right, sample_)) return false;
+    if (!look(right)) return false;
     evaluate_guards(sample_, after_);
     int first = -1;
     for (int i = 0; i < after_.size(); ++i) {
@@ -184,15 +201,21 @@ double HybridIntegrator::locate(int guard, double a, double b) {
 /// The state at the crossing, as accurate as a step: the instant itself is corrected where the interpolant was off.
 bool HybridIntegrator::land(Crossing& crossing, DaeState& state) {
   const int guard = crossing.fired.front();
-  const double delta = 1e-3 * (flow_->end() - flow_->begin());
-  const double t0 = std::max(flow_->begin(), crossing.t - delta), t1 = std::min(flow_->end(), t0 + 2 * delta);
+  const double delta = 1e-3 * (current_->end() - current_->begin());
+  const double t0 = std::max(current_->begin(), crossing.t - delta), t1 = std::min(current_->end(), t0 + 2 * delta);
   const double slope = (guard_at(t1, guard) - guard_at(t0, guard)) / (t1 - t0);
   for (int k = 0; k < kMaxLandings; ++k) {
-    if (!flow_->land(crossing.t, state)) return fail(IntegrationStatus::no_consistent_state, state, "no consistent multipliers");
+    if (!current_->land(crossing.t, state)) return fail(IntegrationStatus::no_consistent_state, state, "no consistent multipliers");
     evaluate_guards(state, values_);
     const double correction = -values_[guard] / slope;
     if (!(std::abs(correction) > options_.event_tolerance) || !(std::abs(correction) < delta)) break;
-    crossing.t = std::clamp(crossing.t + correction, flow_->begin(), flow_->end());
+    crossing.t = std::clamp(crossing.t + correction, current_->begin(), current_->end());
+  }
+  // a guard that jumps has no zero to land on: the next mode starts where it has fallen, or this event would come back for ever
+  for (double ahead = options_.event_tolerance; values_[guard] > 0 && crossing.t < current_->end(); ahead *= 2) {
+    crossing.t = std::min(crossing.t + ahead, current_->end());
+    if (!current_->land(crossing.t, state)) return fail(IntegrationStatus::no_consistent_state, state, "no consistent multipliers");
+    evaluate_guards(state, values_);
   }
   return true;
 }
@@ -202,7 +225,7 @@ bool HybridIntegrator::write_outputs(double t_last) {
   for (;; ++outputs_) {
     const double t = t_start_ + static_cast<double>(outputs_) * options_.output_step;
     if (t > t_last && !is_same_time(t, t_last)) return true;
-    if (!flow_->interpolate(std::min(t, t_last), sample_)) return true;
+    if (!current_->interpolate(std::min(t, t_last), sample_)) return true;
     sample_.t = t;
     if (!emit(sample_)) {
       ++outputs_;

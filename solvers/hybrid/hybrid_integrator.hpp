@@ -34,13 +34,15 @@ class HybridIntegrator final : public Integrator {
   bool land(Crossing& crossing, DaeState& state);
   bool write_outputs(double t_last);
   bool emit(const DaeState& state);
+  bool look(double t);
   double guard_at(double t, int guard);
   void evaluate_guards(const DaeState& state, Vector& values);
   bool fail(IntegrationStatus status, const DaeState& state, const std::string& why);
 
   const Dae& dae_;
   IntegratorOptions options_;
-  std::unique_ptr<Flow> flow_;
+  std::unique_ptr<Flow> flow_, exact_;  // exact_: for the modes that have one
+  Flow* current_;
   ConsistentStart newton_;
   Dae::Workspace workspace_;
   IntegrationResult result_;
@@ -49,7 +51,7 @@ class HybridIntegrator final : public Integrator {
   DaeState sample_;  // inside a step
   Vector before_, after_, values_;
   std::vector<char> is_armed_;
-  bool is_started_ = false;
+  bool is_started_ = false, reads_derivatives_ = true;
   double t_start_ = 0;
   long outputs_ = 0;  // written so far
 };

@@ -108,6 +108,8 @@ class IdaFlow final : public Flow {
     return true;
   }
 
+  bool interpolate_state(double t, DaeState& state) override { return interpolate(t, state); }
+
   /// xdot and y follow from x; the interpolant's own are less accurate.
   bool land(double t, DaeState& state) override { return interpolate(t, state) && make_consistent(dae_, newton_, state, workspace_); }
 
