@@ -301,6 +301,8 @@ TEST(DeltaScenes, RefuseWhatMakesNoSense) {
                  "the wrist starts out of reach, 0.0519259 m from the workspace");
   EXPECT_MESSAGE(load_scene("delta-step", {"robot.proximal_length=-1"}), InputError, "proximal_length is -1 m (expected more than 0)");
   EXPECT_MESSAGE(load_scene("delta-joystick", {"controller.rate=0"}), InputError, "rate is 0 (expected more than 0)");
+  EXPECT_MESSAGE(load_scene("delta-step", {"controller.delay=1"}), InputError, "delay belongs to a sampled controller");
+  EXPECT_MESSAGE(load_scene("delta-wall", {"controller.payload=-1"}), InputError, "payload is -1 kg");
   EXPECT_MESSAGE(load_scene("delta-wall", {"contact.1.stiffness=0"}), InputError, "stiffness is 0 N/m");
   EXPECT_MESSAGE(load_scene("delta-wall", {"push.on=object"}), InputError, "there is no object");
   EXPECT_MESSAGE(load_scene("delta-wall", {"simulation.duration=-1"}), InputError, "duration is -1 s");

@@ -153,7 +153,7 @@ void SceneDae::outputs(const DaeState& state, Workspace&, VectorRef values) cons
   int k = 0;
   const auto add = [&](double value) { values[k++] = value; };
   Reference reference = scene_.reference.at(state.t);
-  const double shift = is_sampled() ? state.mode.held[kHeldState + 15] : 0;
+  const double shift = is_sampled() ? ControllerState::read(state.mode.held.segment<ControllerState::kSize>(kHeldState)).shift : 0;
   reference.position += shift * controller_options_.tactile_axis;
   for (int i = 0; i < 3; ++i) add(wrist[i]);
   for (int i = 0; i < 3; ++i) add(reference.position[i]);

@@ -167,6 +167,15 @@ void read_controller(const Table& root, Scene& scene) {
   scene.delay = section.not_negative("delay", 0);
   scene.encoder_bits = section.not_negative("encoder_bits", 0);
   scene.controller_payload = section.number("payload", scene.robot.payload);
+  if (scene.controller_payload < 0) {
+    throw InputError(section.find("payload")->position("payload"), fmt::format("payload is {} kg", scene.controller_payload), "0 or more");
+  }
+  if (scene.control != ControlMode::sampled) {
+    for (const char* key : {"rate", "delay", "encoder_bits", "filter", "tactile_gain", "tactile_limit", "tactile_axis"}) {
+      if (section.find(key))
+        throw InputError(section.find(key)->position(key), fmt::format("{} belongs to a sampled controller", key), "mode = \"sampled\"");
+    }
+  }
   try {
     validate(options);
   } catch (const std::invalid_argument& error) {

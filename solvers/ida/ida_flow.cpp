@@ -18,8 +18,8 @@ namespace {
 constexpr int kAlwaysDense = 30;      // unknowns up to which the dense LU is the faster one
 constexpr double kSparseFill = 0.25;  // of the pattern, above which it is as well
 
-constexpr double kFirstStep = 0.25;   // of a restart, in parts of the longest step since the one before
-constexpr int kRecoverable = 1;  // IDA tries a smaller step
+constexpr double kFirstStep = 0.25;  // of a restart, in parts of the longest step since the one before
+constexpr int kRecoverable = 1;      // IDA tries a smaller step
 
 void check(int flag, const char* call) {
   if (flag < 0) throw std::runtime_error(std::string("IDA: ") + call + " fails with " + std::to_string(flag));
