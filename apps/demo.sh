@@ -42,6 +42,8 @@ up_to_date() {
 job hover "$tenon" allocate momav --wrenches problems/allocation/hover_sweep.csv --output "$records/hover.csv"
 job compare_classic "$tenon" compare hs071 hs100
 job compare_momav "$tenon" compare momav --rows 20 --seed 1
+job cradle "$tenon" simulate cradle --output "$records/cradle.csv" --events "$records/cradle_events.csv"
+job bouncing_ball "$tenon" simulate bouncing-ball --output "$records/ball.csv" --events "$records/ball_events.csv"
 job bench_allocation "$tenon" bench allocation
 
 echo

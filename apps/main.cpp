@@ -14,15 +14,13 @@
 
 namespace {
 
-tenon::OutputError no_standard_output(int error) {
-  return tenon::OutputError(fmt::format("standard output: cannot be written: {}", std::strerror(error)));
-}
-
 int run(int argc, char** argv) {
   tenon::watch_for_interrupts();
   const auto invocation = tenon::read_command_line(argc, argv);
   const int code = invocation ? invocation->verb->run(invocation->arguments) : tenon::kFinished;
-  if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw no_standard_output(errno);
+  if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
+    throw tenon::OutputError(fmt::format("standard output: cannot be written: {}", std::strerror(errno)));
+  }
   return code;
 }
 
@@ -42,9 +40,8 @@ int main(int argc, char** argv) {
     return explain(error, tenon::kBadInput);
   } catch (const tenon::OutputError& error) {
     return explain(error, tenon::kNoOutput);
-  } catch (const std::system_error& error) {  // what printing throws where the text is longer than its buffer
-    if (std::ferror(stdout)) return explain(no_standard_output(error.code().value()), tenon::kNoOutput);
-    return explain(error, tenon::kNotSolved);
+  } catch (const std::system_error& error) {  // fmt, where its output does not fit the buffer of standard output
+    return explain(tenon::OutputError("standard output: cannot be written: " + error.code().message()), tenon::kNoOutput);
   } catch (const std::exception& error) {
     return explain(error, tenon::kNotSolved);
   }

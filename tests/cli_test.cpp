@@ -191,5 +191,39 @@ TEST_F(CommandLine, ListsSolvesChecksComparesAndFits) {
   EXPECT_NE(run("bench allocation/linear --json").out.find("\"median_s\""), std::string::npos);
 }
 
+TEST_F(CommandLine, SimulatesASceneIntoATrajectoryAndItsEvents) {
+  const Ended ended = run("simulate bouncing-ball --output out.csv --events events.csv");
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.out.find("reached at t = 2 s"), std::string::npos) << ended.out;
+  const CsvTable table = read_csv(folder_.path("out.csv"), {{"t", "x1", "vx1", "lambda_ground", "gap_ground", "mode_ground", "energy"}, {}});
+  EXPECT_EQ(table["t"].front(), 0);
+  EXPECT_EQ(table["t"].back(), 2);
+  EXPECT_EQ(table["mode_ground"].back(), 1) << "still settling";
+  EXPECT_EQ(folder_.read("events.csv").substr(0, folder_.read("events.csv").find('\n')),
+            "t,contact,from,to,gap,gap_rate_before,gap_rate_after,impulse,energy_before,energy_after");
+}
+
+TEST_F(CommandLine, ASceneTakesItsParametersByName) {
+  const Ended ended = run("simulate bouncing-ball --set height=0.5 --set simulation.duration=0.1 --json");
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.out.find("\"t\": 0.1"), std::string::npos) << ended.out;
+  expect_bad_input("simulate bouncing-ball --set heigth=2 --output out.csv", "--set heigth=2: unknown parameter 'heigth', the nearest is 'height'");
+  expect_bad_input("simulate bouncing-ball --set height=-1 --output out.csv", "bouncing-ball:");
+  expect_bad_input("simulate bouncing-boll --output out.csv", "unknown scene 'bouncing-boll', the nearest is 'bouncing-ball'");
+  expect_bad_input("simulate cradle --set restitution=1.1 --output out.csv", "cradle:");
+  expect_bad_input("simulate cradle --solver eda --output out.csv", "unknown integrator \"eda\"");
+}
+
+TEST_F(CommandLine, ARunThatCannotGoOnKeepsItsRecordAndSaysWhen) {
+  folder_.write("scene.toml",
+                "[simulation]\nduration = 1.0\n[[body]]\nname = \"b\"\nkind = \"line\"\nmass = 1.0\n[[force]]\nname = \"f\"\ntype = "
+                "\"expression\"\non = \"b\"\nforce = [1.0, 0.0]\nexpression = \"sqrt(0.5 - t)\"\n");
+  const Ended ended = run("simulate scene.toml --output out.csv");
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_NE(ended.err.find("t = 0.5"), std::string::npos) << ended.err;
+  EXPECT_FALSE(folder_.has("out.csv"));
+  EXPECT_GE(read_csv(folder_.path("out.csv.partial"), {{"t", "x1"}, {}}).rows(), 45);
+}
+
 }  // namespace
 }  // namespace tenon

@@ -108,7 +108,7 @@ TEST(Cradle, KeepsMomentumAcrossImpactsAndEnergyOverTenSwings) {
   const SceneRun run = run_scene("cradle");
   const double swing = kGravity * (1 - std::cos(std::numbers::pi / 6));
   EXPECT_LT(run.largest("energy_error"), 1e-8 * swing);
-  EXPECT_NEAR(run.column("energy").back(), run.column("energy").front(), 1e-8 * swing);
+  EXPECT_NEAR(run.last("energy"), run.column("energy")[0], 1e-8 * swing);
   EXPECT_EQ(run.events_to(1).size(), 40u) << "ten impacts of four pairs";
   const auto& dae = static_cast<const contact::ContactDae<2>&>(*run.dae);
   // just before and after an event: two rows at one time
@@ -167,17 +167,18 @@ TEST(BoxInCorner, RestsOnExactForcesAndItsPeakIsTheLaws) {
   std::vector<double> peaks;
   for (const double rtol : {1e-6, 1e-8, 1e-10}) {
     const SceneRun run = run_scene("box-in-corner", {"simulation.output_step=1e-4"}, "dop853", rtol);
-    const auto sum = [&](const std::vector<const char*>& names) {
-      double total = 0;
-      for (const char* name : names) total += run.column(std::string("lambda_") + name).back();
-      return total;
-    };
-    EXPECT_NEAR(sum({"floor_1", "floor_2"}), kGravity + 5, 1e-9);
-    EXPECT_NEAR(sum({"wall_2", "wall_3"}), 20, 1e-9);
-    peaks.push_back(run.largest("lambda_wall_2") + run.largest("lambda_wall_3"));
-    EXPECT_NEAR(peaks.back(), 100 * std::sqrt(2 * 20 * 0.05) + 20, 0.01) << "at the touch the law asks for h'' = -alpha1 h'";
+    const Vector floor = run.column("lambda_floor_1") + run.column("lambda_floor_2"),
+                 wall = run.column("lambda_wall_2") + run.column("lambda_wall_3");
+    if (rtol < 1e-7) {  // lambda = m (alpha1 h' + alpha0 h) + what rests: the state's error enters a hundredfold
+      EXPECT_NEAR(floor[floor.size() - 1], kGravity + 5, 1e-9);
+      EXPECT_NEAR(wall[wall.size() - 1], 20, 1e-9);
+    }
+    peaks.push_back(wall.maxCoeff());
+    EXPECT_NEAR(peaks.back(), 100 * std::sqrt(2 * 20 * 0.05) + 20, rtol < 1e-7 ? 1e-4 : 0.04)
+        << "at the touch the law asks for h'' = -alpha1 h'";
   }
-  EXPECT_NEAR(peaks[0], peaks[2], 1e-3);
+  EXPECT_NEAR(peaks[1], peaks[2], 1e-4);
+  EXPECT_NEAR(peaks[0], peaks[2], 0.04) << "at 1e-6 the box arrives tilted by its error, and its corners touch one after the other";
 }
 
 TEST(FallingBody, TakesItsSequenceOfModes) {
@@ -193,8 +194,8 @@ TEST(FallingBody, TakesItsSequenceOfModes) {
   for (const DaeEvent& event : run.events) EXPECT_NE(event.contact, "h5");
   const std::vector<int> modes(run.final.mode.discrete);
   EXPECT_EQ(modes, (std::vector<int>{2, 2, 2, 2, 0}));
-  EXPECT_NEAR(run.column("lambda_h3").back() + run.column("lambda_h4").back(), kGravity, 1e-8);
-  EXPECT_NEAR(run.column("lambda_h1").back() + run.column("lambda_h2").back(), 5 * kGravity, 1e-8);
+  EXPECT_NEAR(run.last("lambda_h3") + run.last("lambda_h4"), kGravity, 1e-8);
+  EXPECT_NEAR(run.last("lambda_h1") + run.last("lambda_h2"), 5 * kGravity, 1e-8);
 }
 
 // A box lands flat with one corner held: it lets go of it iff half height a > sqrt(2) half width b, where 1/m - b^2/J > 0.
@@ -223,13 +224,14 @@ TEST(Scenes, CloseTheirEnergyAuditWithoutPenetration) {
                                    {"falling-body", 1.5, 3},
                                    {"rocking-block", 3, 4}}) {
     const SceneRun run = run_scene(expected.scene, {"simulation.duration=" + std::to_string(expected.duration)});
-    const auto energy = run.column("energy");
-    const auto [low, high] = std::minmax_element(energy.begin(), energy.end());
-    EXPECT_LT(run.largest("energy_error"), 1e-6 * (*high - *low)) << expected.scene;
+    const Vector energy = run.column("energy");
+    EXPECT_LT(run.largest("energy_error"), 1e-6 * (energy.maxCoeff() - energy.minCoeff())) << expected.scene;
     EXPECT_GE(run.events_to(1).size(), static_cast<std::size_t>(expected.least_contacts)) << expected.scene;
     for (const std::string& name : run.names) {
-      if (name.starts_with("gap_")) EXPECT_GT(run.smallest(name), -1e-8) << expected.scene << " " << name;
-      if (name.starts_with("lambda_") && run.is_contact(name)) EXPECT_GT(run.smallest(name), -1e-6) << expected.scene << " " << name;
+      const bool is_gap = name.starts_with("gap_"), is_force = name.starts_with("lambda_") && run.is_contact(name);
+      if (is_gap || is_force) {
+        EXPECT_GT(run.smallest(name), is_gap ? -1e-8 : -1e-6) << expected.scene << " " << name;
+      }
     }
   }
 }
@@ -246,9 +248,9 @@ TEST(RockingBlock, LosesSpeedAtEachImpactAsHousnerFound) {
 
 TEST(RopeSway, SwingsInItsFirstMode) {
   const SceneRun run = run_scene("rope-sway");
-  const auto t = run.column("t"), x = run.column("x40");
+  const Vector t = run.column("t"), x = run.column("x40");
   std::vector<double> crossings;
-  for (std::size_t k = 1; k < x.size(); ++k) {
+  for (int k = 1; k < x.size(); ++k) {
     if ((x[k - 1] > 0) != (x[k] > 0) && t[k - 1] > 0.1) crossings.push_back(t[k - 1] - x[k - 1] * (t[k] - t[k - 1]) / (x[k] - x[k - 1]));
   }
   ASSERT_GE(crossings.size(), 3u);
@@ -256,10 +258,52 @@ TEST(RopeSway, SwingsInItsFirstMode) {
   EXPECT_NEAR(omega, 1.2024 * std::sqrt(kGravity), 0.02 * 1.2024 * std::sqrt(kGravity)) << "forty beads hang half a link lower than a rope";
 }
 
+TEST(BoxStack, FourRedundantCornersShareTheWeight) {
+  const SceneRun run = run_scene("box-stack", {"boxes=1", "gap=0"});
+  EXPECT_NEAR(run.last("lambda_floor_1") + run.last("lambda_floor_2"), kGravity, 1e-9);
+  const SceneRun stack = run_scene("box-stack");
+  EXPECT_NEAR(stack.last("lambda_floor_1") + stack.last("lambda_floor_2"), 5 * kGravity, 1e-6);
+  for (int i = 1; i <= 5; ++i)
+    EXPECT_NEAR(stack.last("y" + std::to_string(i)), 0.2 * (i - 0.5), 1e-6) << "box " << i << " stands on the others";
+}
+
+TEST(CableSway, StrikesThePostAndKeepsItsAudit) {
+  const SceneRun run = run_scene("cable-sway", {"simulation.duration=1.5"});
+  EXPECT_GE(run.events_to(1).size(), 1u);
+  const Vector energy = run.column("energy");
+  EXPECT_LT(run.largest("energy_error"), 1e-6 * 2.5) << "the cable's energy over its fall";
+  EXPECT_LE(energy[energy.size() - 1], energy[0] + 1e-6) << "restitution below 1 takes energy";
+}
+
+// Links pull on both their beads alike: only weight and the pot change the chain's momentum. Looked at while no bead that touches is past
+// the flat.
+TEST(ChainFountain, ChangesItsMomentumByWeightAndPotAlone) {
+  const SceneRun run = run_scene("chain-fountain", {"simulation.duration=0.2"});
+  EXPECT_LT(run.largest("energy_error"), 1e-6);
+  EXPECT_GE(run.events.size(), 50u) << "beads rest in the pot";
+  constexpr int kBeads = 100, kLinks = 99;
+  int looked_at = 0;
+  for (const DaeState& state : run.states) {
+    bool is_flat = true;
+    double pot = 0, x = 0, y = 0;
+    for (int k = 0; k < kBeads; ++k) x += 0.002 * state.xdot[4 * k + 2], y += 0.002 * state.xdot[4 * k + 3];
+    for (int c = kLinks; c < state.y.size(); ++c) {
+      const int bead = 20 + c - kLinks;
+      pot += state.y[c];
+      is_flat &= state.mode.discrete[static_cast<std::size_t>(c)] == contact::kFree || state.x[4 * bead] < 0;
+    }
+    if (!is_flat) continue;
+    ++looked_at;
+    EXPECT_NEAR(x, 0, 1e-9) << state.t;
+    EXPECT_NEAR(y, pot - 0.002 * kBeads * kGravity, 1e-9) << state.t;
+  }
+  EXPECT_GE(looked_at, 3);
+}
+
 TEST(Jacobian, AgreesWithDifferencesInEveryMode) {
   for (const char* scene :
        {"bouncing-ball", "cradle", "falling-body", "circuit-breaker", "car", "paper-clip", "ball-and-cup", "box-stack"}) {
-    check_jacobian(scene, 1e-6);
+    check_jacobian(contact::load_scene(scene), 1e-6);
   }
 }
 

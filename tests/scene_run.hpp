@@ -27,21 +27,15 @@ struct SceneRun : Trajectory {
   DaeState final;
   IntegrationResult result;
 
-  std::vector<double> column(const std::string& name) const {
+  Vector column(const std::string& name) const {
     const std::size_t at = Trajectory::column(name);
-    std::vector<double> values;
-    for (const auto& row : rows) values.push_back(row[at]);
+    Vector values(static_cast<int>(rows.size()));
+    for (std::size_t k = 0; k < rows.size(); ++k) values[static_cast<int>(k)] = rows[k][at];
     return values;
   }
-  double largest(const std::string& name) const {
-    double most = 0;
-    for (const double value : column(name)) most = std::max(most, std::abs(value));
-    return most;
-  }
-  double smallest(const std::string& name) const {
-    const auto values = column(name);
-    return *std::min_element(values.begin(), values.end());
-  }
+  double last(const std::string& name) const { return rows.back()[Trajectory::column(name)]; }
+  double largest(const std::string& name) const { return column(name).cwiseAbs().maxCoeff(); }
+  double smallest(const std::string& name) const { return column(name).minCoeff(); }
   bool is_contact(const std::string& lambda) const {
     return std::find(names.begin(), names.end(), "gap_" + lambda.substr(7)) != names.end();
   }
@@ -58,9 +52,7 @@ struct SceneRun : Trajectory {
 };
 
 /// rtol 0: the scene's own.
-inline SceneRun run_scene(const std::string& name, const std::vector<std::string>& overrides = {}, const std::string& integrator = "",
-                          double rtol = 0) {
-  contact::SceneFile file = contact::load_scene(name, overrides);
+inline SceneRun run_scene(contact::SceneFile file, const std::string& integrator = "", double rtol = 0) {
   SceneRun run;
   run.dae = make_scene(file);
   run.names = trajectory_columns(*run.dae);
@@ -77,13 +69,17 @@ inline SceneRun run_scene(const std::string& name, const std::vector<std::string
   run.final = initial_state_of(*run.dae);
   const std::string chosen = integrator.empty() ? file.simulation.integrator : integrator;
   run.result = make_integrator(chosen, *run.dae, options)->advance(run.final, file.simulation.duration);
-  EXPECT_EQ(run.result.status, IntegrationStatus::reached) << name << ": " << run.result.explanation;
+  EXPECT_EQ(run.result.status, IntegrationStatus::reached) << run.dae->name() << ": " << run.result.explanation;
   return run;
 }
 
+inline SceneRun run_scene(const std::string& name, const std::vector<std::string>& overrides = {}, const std::string& integrator = "",
+                          double rtol = 0) {
+  return run_scene(contact::load_scene(name, overrides), integrator, rtol);
+}
+
 /// The Jacobian against central differences of the residual, at the start, with all contacts off and all of them on.
-inline void check_jacobian(const std::string& name, double tolerance) {
-  contact::SceneFile file = contact::load_scene(name);
+inline void check_jacobian(contact::SceneFile file, double tolerance) {
   const std::unique_ptr<Dae> dae = make_scene(file);
   Dae::Workspace workspace = dae->make_workspace();
   DaeState state = initial_state_of(*dae);
@@ -109,7 +105,8 @@ inline void check_jacobian(const std::string& name, double tolerance) {
       const Vector difference = (plus - minus) / (2 * step);
       for (int i = 0; i < n; ++i) {
         EXPECT_NEAR(dense(i, j), difference[i], tolerance * std::max(1.0, std::abs(difference[i])) * 100)
-            << name << ": row " << i << ", column " << (j < nx ? dae->state_name(j) : dae->algebraic_name(j - nx)) << ", mode " << mode;
+            << dae->name() << ": row " << i << ", column " << (j < nx ? dae->state_name(j) : dae->algebraic_name(j - nx)) << ", mode "
+            << mode;
       }
     }
   }

@@ -20,6 +20,10 @@ namespace tenon::contact {
 /// State of one contact, as the record shows it.
 enum ContactMode : int { kFree = 0, kCollision = 1, kContact = 2 };
 
+/// What stands where in DaeMode::held.
+inline constexpr int kHeldRedundant = 0;  // 1 where active contacts depend on one another
+inline constexpr int kHeldEnergy = 1;     // J, at the start
+
 inline constexpr double kGapTolerance = 1e-12;          // m: a free contact collides where its gap closes at less than minus this
 inline constexpr double kTouching = 1e-9;               // m: gaps up to here touch
 inline constexpr double kSpeedTolerance = 1e-10;        // m/s: a gap that closes no faster stands still
@@ -90,6 +94,7 @@ class ContactDae final : public Dae {
   void solve_multipliers(const DaeMode& mode, double t, Bodies& bodies) const;
   void set_accelerations(Bodies& bodies) const;
   double acceleration(int constraint, const Bodies& bodies) const;
+  double acceleration(const Constraint<D>& c, const GapValue<double, D>& g, ConstVectorRef xdot) const;
   double energy_of(double t, const Bodies& bodies) const;
   double* work_of(DaeState& state, int constraint) const;
 

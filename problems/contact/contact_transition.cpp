@@ -16,7 +16,6 @@ namespace tenon::contact {
 namespace {
 
 constexpr double kClosed = 1e-11;  // m: gaps up to here collide
-constexpr int kHeldRedundant = 0;
 
 /// Unit vectors across the normal.
 std::array<Point<double, 2>, 1> tangents_of(const Point<double, 2>& n) {
@@ -54,10 +53,7 @@ template <int D>
 double ContactDae<D>::acceleration(int constraint, const Bodies& bodies) const {
   const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(constraint)];
   const GapValue<double, D> g = gap_of(constraint, bodies.t, bodies);
-  double sum = g.bias;
-  for (int l = 0; l < place(c.a).nv; ++l) sum += g.H_A[l] * of(bodies.acceleration, c.a)[l];
-  for (int l = 0; l < place(c.b).nv; ++l) sum += g.H_B[l] * of(bodies.acceleration, c.b)[l];
-  return sum;
+  return g.bias + g.H_A.dot(of(bodies.acceleration, c.a)) + g.H_B.dot(of(bodies.acceleration, c.b));
 }
 
 /// Contacts whose multiplier has fallen to zero.
@@ -88,10 +84,7 @@ bool ContactDae<D>::begin_one_law(DaeState& state, const Bodies& bodies, const E
     const GapValue<double, D> g = gap_of(i, state.t, bodies);
     if (g.h > kClosed || g.hdot >= -kSpeedTolerance) continue;
     // where the free motion opens faster than the law would, the law would have to pull
-    double free = g.bias;
-    for (int l = 0; l < place(c.a).nv; ++l) free += g.H_A[l] * state.xdot[place(c.a).v + l];
-    for (int l = 0; l < place(c.b).nv; ++l) free += g.H_B[l] * state.xdot[place(c.b).v + l];
-    if (free >= -(c.law.alpha1 * g.hdot + c.law.alpha0 * g.h + c.law.alpha3 * g.h * g.h * g.h)) continue;
+    if (acceleration(c, g, state.xdot) >= c.law.acceleration(g.h, g.hdot)) continue;
     const int next = -g.hdot < c.rest_speed ? kContact : kCollision;
     report(state, i, mode, next, bodies, g.hdot, 0, energy_of(state.t, bodies), log);
     mode = next;
@@ -108,7 +101,7 @@ bool ContactDae<D>::settle_one_law(DaeState& state, const Bodies& bodies, const 
     if (mode != kCollision || !(state.y[i] > 0)) continue;
     const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
     const GapValue<double, D> g = gap_of(i, state.t, bodies);
-    const double hddot = -(c.law.alpha1 * g.hdot + c.law.alpha0 * g.h + c.law.alpha3 * g.h * g.h * g.h);
+    const double hddot = c.law.acceleration(g.h, g.hdot);
     // the guard located this on its own scale: a hair above its threshold is on it
     if (std::pow(g.hdot / c.rest_speed, 2) + std::pow(hddot / c.rest_acceleration, 2) > 1 + 1e-6) continue;
     report(state, i, mode, kContact, bodies, g.hdot, 0, energy_of(state.t, bodies), log);

@@ -41,12 +41,4 @@ double contact_time_of(const Law& law) {
   return 2 * angle_ratio(law.alpha1 / (2 * w)) / w;
 }
 
-double peak_of(const Law& law) {
-  // h'' = v w e^{-zeta w t} (sin(w_d t)(1 - 2 zeta^2)/sqrt(1-zeta^2) + 2 zeta cos w_d t): largest at the start above zeta = 1/2
-  const double w = std::sqrt(law.alpha0), zeta = law.alpha1 / (2 * w);
-  if (zeta >= 0.5) return law.alpha1;
-  const double wd = std::sqrt(1 - zeta * zeta), t = std::atan2(wd * (1 - 4 * zeta * zeta), zeta * (3 - 4 * zeta * zeta)) / wd;
-  return w * std::exp(-zeta * t) * (std::sin(wd * t) * (1 - 2 * zeta * zeta) / wd + 2 * zeta * std::cos(wd * t));
-}
-
 }  // namespace tenon::contact

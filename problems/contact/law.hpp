@@ -12,6 +12,9 @@ namespace tenon::contact {
 struct Law {
   double alpha0 = 0, alpha1 = 0, alpha3 = 0;
 
+  /// The h'' that the law asks for.
+  double acceleration(double h, double hdot) const { return -(alpha1 * hdot + alpha0 * h + alpha3 * h * h * h); }
+
   /// Both poles at -p.
   static Law critical(double p) { return {p * p, 2 * p, 0}; }
 };
@@ -24,7 +27,5 @@ double damping_ratio_of(double restitution);
 Law law_of(double restitution, double contact_time);
 /// From the first touch at this closing speed to release, s.  (13)
 double contact_time_of(const Law& law);
-/// Largest force per effective mass and closing speed, 1/s: max of -alpha1 hdot - alpha0 h over the collision.
-double peak_of(const Law& law);
 
 }  // namespace tenon::contact
