@@ -12,8 +12,8 @@ namespace tenon {
 
 struct Arguments {
   std::vector<std::string> names;  // the words that are no flags: problems, a vehicle, a file
-  std::string wrenches, output, events, fast_phase, trace, dump, profile;
-  std::optional<std::string> solver, solvers, initial;
+  std::string wrenches, output, events, fast_phase, trace, dump, profile, workspace, impedance;
+  std::optional<std::string> solver, solvers, initial, inverse, forward;
   std::vector<std::string> set;
   std::optional<double> tolerance, time_limit;
   std::optional<int> max_iterations;
@@ -21,7 +21,7 @@ struct Arguments {
   int rows = 0;
   int starts = 1;
   int degree = 2;
-  bool constant = false, cold = false, real_time = false, json = false, quiet = false, verbose = false;
+  bool constant = false, cold = false, jacobians = false, real_time = false, json = false, quiet = false, verbose = false;
 
   /// The solver options that were given; the others as they are by default, or as the caller has them.
   Options options(Options options = {}) const {

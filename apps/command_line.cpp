@@ -47,6 +47,15 @@ const std::map<std::string, std::function<CLI::Option*(CLI::App&, Arguments&)>>&
        [](App& a, Args& v) {
          return a.add_option("--initial", v.initial, "arm angles before the first row, rad")->type_name("A1,...,AN");
        }},
+      {"inverse", [](App& a, Args& v) { return a.add_option("--inverse", v.inverse, "the wrist's position, m")->type_name("X,Y,Z"); }},
+      {"forward", [](App& a, Args& v) { return a.add_option("--forward", v.forward, "the motors' angles, rad")->type_name("Q1,Q2,Q3"); }},
+      {"jacobians", [](App& a, Args& v) { return a.add_flag("--jacobians", v.jacobians, "Jacobians, inertia, gravity torque of that pose"); }},
+      {"impedance",
+       [](App& a, Args& v) {
+         return a.add_option("--impedance", v.impedance, "what a grasped part feels over frequency, tactile loop off and on")->type_name("FILE.csv");
+       }},
+      {"workspace",
+       [](App& a, Args& v) { return a.add_option("--workspace", v.workspace, "a map of what is reached")->type_name("FILE.csv"); }},
       {"cold", [](App& a, Args& v) { return a.add_flag("--cold", v.cold, "every row on its own: no previous angles, no rate"); }},
       {"tolerance",
        [](App& a, Args& v) { return a.add_option("--tolerance", v.tolerance, "where a solve ends")->type_name("X")->check(finite); }},

@@ -13,6 +13,8 @@
 #include "tenon/problems/allocation/vehicle_file.hpp"
 #include "tenon/problems/catalogue.hpp"
 #include "tenon/problems/contact/scene_file.hpp"
+#include "tenon/problems/delta/robot_file.hpp"
+#include "tenon/problems/delta/scene_file.hpp"
 #include "tenon/solvers/make_solver.hpp"
 
 namespace tenon {
@@ -41,6 +43,12 @@ std::vector<Named> vehicles() {
   return list;
 }
 
+std::vector<Named> robots() {
+  std::vector<Named> list;
+  for (const std::string& name : delta::builtin_robots()) list.push_back({name, delta::describe_builtin_robot(name)});
+  return list;
+}
+
 std::vector<Named> solvers() {
   std::vector<Named> list;
   for (const SolverDescription& s : list_solvers()) list.push_back({s.name, s.description, s.available});
@@ -50,6 +58,7 @@ std::vector<Named> solvers() {
 std::vector<Named> scenes() {
   std::vector<Named> list;
   for (const std::string& name : contact::builtin_scenes()) list.push_back({name, contact::describe_builtin_scene(name)});
+  for (const std::string& name : delta::builtin_scenes()) list.push_back({name, delta::describe_builtin_scene(name)});
   return list;
 }
 
@@ -59,7 +68,7 @@ std::vector<Named> none() {
 
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> table{{"problems", &problems}, {"vehicles", &vehicles}, {"missions", &none},
-                                       {"scenes", &scenes},     {"robots", &none},       {"solvers", &solvers}};
+                                       {"scenes", &scenes},     {"robots", &robots},     {"solvers", &solvers}};
   return table;
 }
 

@@ -1,6 +1,11 @@
 #include "tenon/apps/simulation.hpp"
 
+#include <algorithm>
+
+#include "tenon/core/nearest_name.hpp"
 #include "tenon/problems/contact/contact_dae.hpp"
+#include "tenon/problems/delta/scene_dae.hpp"
+#include "tenon/problems/delta/scene_file.hpp"
 
 namespace tenon {
 
@@ -11,9 +16,7 @@ std::unique_ptr<Dae> make_dae(contact::Scene<D> scene) {
   return std::make_unique<contact::ContactDae<D>>(std::move(scene));
 }
 
-}  // namespace
-
-Simulation open_simulation(const std::string& name_or_path, const std::vector<std::string>& overrides) {
+Simulation open_contact(const std::string& name_or_path, const std::vector<std::string>& overrides) {
   contact::SceneFile file = contact::load_scene(name_or_path, overrides);
   Simulation out;
   out.settings = file.simulation;
@@ -26,6 +29,33 @@ Simulation open_simulation(const std::string& name_or_path, const std::vector<st
       },
       file.scene);
   return out;
+}
+
+Simulation open_delta(const std::string& name_or_path, const std::vector<std::string>& overrides) {
+  delta::Scene scene = delta::load_scene(name_or_path, overrides);
+  Simulation out;
+  out.settings.duration = scene.duration;
+  out.settings.output_step = scene.output_step;
+  out.settings.rtol = scene.rtol;
+  out.settings.atol = 1e-2 * scene.rtol;
+  out.dae = std::make_unique<delta::SceneDae>(std::move(scene));
+  return out;
+}
+
+/// Whether a name that nobody has is nearer to a delta robot's scene.
+bool sounds_like_delta(const std::string& name) {
+  std::vector<std::string> names = contact::builtin_scenes();
+  const std::vector<std::string> delta_names = delta::builtin_scenes();
+  names.insert(names.end(), delta_names.begin(), delta_names.end());
+  return std::ranges::count(delta_names, nearest_name(name, names)) > 0;
+}
+
+}  // namespace
+
+Simulation open_simulation(const std::string& name_or_path, const std::vector<std::string>& overrides) {
+  const bool is_word = name_or_path.find_first_of("/.") == std::string::npos;
+  const bool is_delta = delta::has_delta_robot(name_or_path) || (is_word && sounds_like_delta(name_or_path));
+  return is_delta ? open_delta(name_or_path, overrides) : open_contact(name_or_path, overrides);
 }
 
 }  // namespace tenon

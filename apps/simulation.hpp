@@ -17,7 +17,7 @@ struct Simulation {
   std::map<std::string, contact::Law> collisions;  // the law of each two-scale contact's fast phase, by the contact's name
 };
 
-/// Throws as contact::load_scene does.
+/// A delta robot's scene or one of bodies in contact. Throws as their load_scene do, and where the wrist starts at a singularity.
 Simulation open_simulation(const std::string& name_or_path, const std::vector<std::string>& overrides = {});
 
 }  // namespace tenon

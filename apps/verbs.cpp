@@ -8,6 +8,7 @@ int run_check(const Arguments&);
 int run_compare(const Arguments&);
 int run_fit(const Arguments&);
 int run_list(const Arguments&);
+int run_robot(const Arguments&);
 int run_simulate(const Arguments&);
 int run_solve(const Arguments&);
 
@@ -22,6 +23,13 @@ const std::vector<Verb>& verbs() {
        {"wrenches", "output", "solver", "set", "cold", "initial", "tolerance", "max-iterations", "time-limit", "trace", "json", "quiet",
         "verbose"},
        &run_allocate},
+      {"robot",
+       "kinematics and statics of a delta robot at a pose, or its workspace",
+       "ROBOT",
+       1,
+       1,
+       {"inverse", "forward", "jacobians", "workspace", "impedance", "set", "json", "quiet"},
+       &run_robot},
       {"fit", "thrust and torque polynomials from calibration data", "BENCH.csv", 1, 1, {"degree", "constant", "json"}, &run_fit},
       {"simulate",
        "a scene in time: bodies, contacts, events, energy",

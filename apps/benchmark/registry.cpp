@@ -4,6 +4,7 @@ namespace tenon {
 
 void add_allocation(std::vector<Benchmark>& rows);
 void add_contact(std::vector<Benchmark>& rows);
+void add_delta(std::vector<Benchmark>& rows);
 void add_linear_allocation(std::vector<Benchmark>& rows);
 void add_linear_quadratic(std::vector<Benchmark>& rows);
 void add_swing_up(std::vector<Benchmark>& rows);
@@ -15,6 +16,7 @@ std::vector<Benchmark> benchmarks() {
   add_swing_up(rows);
   add_linear_quadratic(rows);
   add_contact(rows);
+  add_delta(rows);
   return rows;
 }
 

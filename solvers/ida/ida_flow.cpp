@@ -18,7 +18,8 @@ namespace {
 constexpr int kAlwaysDense = 30;      // unknowns up to which the dense LU is the faster one
 constexpr double kSparseFill = 0.25;  // of the pattern, above which it is as well
 
-constexpr int kRecoverable = 1;  // IDA tries a smaller step
+constexpr double kFirstStep = 0.25;  // of a restart, in parts of the longest step since the one before
+constexpr int kRecoverable = 1;      // IDA tries a smaller step
 
 void check(int flag, const char* call) {
   if (flag < 0) throw std::runtime_error(std::string("IDA: ") + call + " fails with " + std::to_string(flag));
@@ -74,7 +75,9 @@ class IdaFlow final : public Flow {
       create();
       return true;
     }
-    return IDAReInit(memory_.get(), state.t, z_.get(), zdot_.get()) == IDA_SUCCESS;
+    // After a clock's tick the flow goes on much as before: without a hint IDA would double its way up from 1/1000 of the interval each time.
+    return IDAReInit(memory_.get(), state.t, z_.get(), zdot_.get()) == IDA_SUCCESS &&
+           IDASetInitStep(memory_.get(), kFirstStep * longest_) == IDA_SUCCESS;
   }
 
   Step step(double t_limit, double h_max) override {
@@ -87,6 +90,7 @@ class IdaFlow final : public Flow {
       return flag == IDA_LSETUP_FAIL || flag == IDA_LSOLVE_FAIL || flag == IDA_RES_FAIL ? Step::failed : Step::collapsed;
     }
     ++steps_;
+    longest_ = begin_ == at_.t ? end_ - begin_ : std::max(longest_, end_ - begin_);
     return Step::taken;
   }
 
@@ -190,6 +194,7 @@ class IdaFlow final : public Flow {
   SparsePattern pattern_;
   DaeState at_;  // where the flow was started; its mode and u hold until the next start
   std::vector<double> values_;
+  double longest_ = 0;  // step since the last start, s
 
   Context context_;
   NVector z_, zdot_, tolerance_, kind_, inside_;  // z = (x, y)
