@@ -11,9 +11,11 @@
 #include "tenon/apps/make_allocator.hpp"
 #include "tenon/apps/observers.hpp"
 #include "tenon/apps/progress.hpp"
+#include "tenon/apps/report/report.hpp"
 #include "tenon/apps/verb.hpp"
 #include "tenon/core/csv.hpp"
 #include "tenon/problems/allocation/vehicle_file.hpp"
+#include "tenon/problems/allocation/vehicle_scenery.hpp"
 #include "tenon/problems/allocation/wrench_log.hpp"
 
 namespace tenon {
@@ -70,6 +72,21 @@ class Failures {
   std::vector<bool> rotor_, servo_;
 };
 
+/// Where the record goes: without --output beside the report, else to stdout, unless the summary does as JSON (then nowhere).
+std::string record_path(const Arguments& arguments) {
+  if (!arguments.output.empty()) return arguments.output;
+  if (!arguments.report.empty()) return record_beside(arguments.report, ".csv");
+  return arguments.json ? "" : "-";
+}
+
+void write_scenery(const Vehicle& vehicle, const std::string& record) {
+  Scenery scenery = vehicle_scenery(vehicle);
+  scenery.title = vehicle.name + ": wrench allocation";
+  OutputFile file(scenery_path(record));
+  file.append(scenery.json());
+  file.finish();
+}
+
 Options allocation_options(const Arguments& arguments, const SolverChoice& choice, Observers& observers) {
   Options options = arguments.options();
   if (!arguments.tolerance && choice.tolerance) options.tolerance = *choice.tolerance;
@@ -98,10 +115,10 @@ int run_allocate(const Arguments& arguments) {
     for (const std::string& note : file.notes) fmt::print(stderr, "tenon: {}\n", note);
   }
 
-  // Without --output the record itself goes to stdout, unless the summary does as JSON.
+  const std::string record = record_path(arguments);
+  if (!arguments.report.empty()) check_output_path(arguments.report);
   std::optional<CsvWriter> csv;
-  if (!arguments.output.empty() || !arguments.json)
-    csv.emplace(arguments.output.empty() ? "-" : arguments.output, column_names(vehicle.num_rotors()));
+  if (!record.empty()) csv.emplace(record, column_names(vehicle.num_rotors()));
   AllocationSummary summary(vehicle, solver);
   Failures failures(vehicle);
   {
@@ -117,16 +134,18 @@ int run_allocate(const Arguments& arguments) {
     }
   }
   if (interrupted()) {
-    if (csv && !arguments.output.empty())
+    if (csv && record != "-")
       fmt::print(stderr, "tenon: interrupted, {} rows are in {}\n", csv->rows(), csv->file().partial_path());
     return kInterrupted;
   }
   if (csv) csv->finish();
   observers.finish();
+  if (record.ends_with(".csv")) write_scenery(vehicle, record);
+  if (!arguments.report.empty()) write_report({record}, arguments.report);
   if (arguments.json)
     print(summary.json());
   else if (!arguments.quiet)
-    fmt::print(arguments.output.empty() ? stderr : stdout, "{}", summary.text());
+    fmt::print(record == "-" ? stderr : stdout, "{}", summary.text());
   return kFinished;
 }
 

@@ -12,7 +12,7 @@ namespace tenon {
 
 struct Arguments {
   std::vector<std::string> names;  // the words that are no flags: problems, a vehicle, a file
-  std::string wrenches, output, trace;
+  std::string wrenches, output, report, trace;
   std::optional<std::string> solver, solvers, initial;
   std::vector<std::string> set;
   std::optional<double> tolerance, time_limit;

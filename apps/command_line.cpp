@@ -26,6 +26,7 @@ const std::map<std::string, std::function<CLI::Option*(CLI::App&, Arguments&)>>&
   static const std::map<std::string, std::function<CLI::Option*(App&, Args&)>> table{
       {"wrenches", [](App& a, Args& v) { return a.add_option("--wrenches", v.wrenches, "the wrench log")->type_name("FILE.csv"); }},
       {"output", [](App& a, Args& v) { return a.add_option("--output", v.output, "where the record goes")->type_name("FILE.csv"); }},
+      {"report", [](App& a, Args& v) { return a.add_option("--report", v.report, "the report page of what came out")->type_name("FILE.html"); }},
       {"trace", [](App& a, Args& v) { return a.add_option("--trace", v.trace, "one line per solver iteration")->type_name("FILE.jsonl"); }},
       {"solver", [](App& a, Args& v) { return a.add_option("--solver", v.solver, "the back end")->type_name("NAME"); }},
       {"solvers", [](App& a, Args& v) { return a.add_option("--solvers", v.solvers, "the back ends to compare")->type_name("A,B,C"); }},

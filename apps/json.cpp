@@ -1,5 +1,6 @@
 #include "tenon/apps/json.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -52,6 +53,62 @@ Json& Json::push(const Json& value) {
 
 std::string Json::text() const {
   return value_->dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string Json::compact_text() const {
+  return value_->dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+Json Json::parse(std::string_view text, const InputPosition& begin) {
+  Json json(0);
+  try {
+    *json.value_ = ordered_json::parse(text);
+  } catch (const ordered_json::parse_error& error) {
+    const std::string_view before = text.substr(0, error.byte > 0 ? error.byte - 1 : 0);
+    const auto lines = static_cast<int>(std::count(before.begin(), before.end(), '\n'));
+    const std::size_t line_begin = lines == 0 ? 0 : before.rfind('\n') + 1;
+    throw InputError({begin.file, std::max(1, begin.line) + lines, static_cast<int>(before.size() - line_begin) + 1}, "this is no JSON",
+                     "an object with keys in double quotes");
+  }
+  return json;
+}
+
+bool Json::is_object() const { return value_->is_object(); }
+bool Json::is_array() const { return value_->is_array(); }
+bool Json::is_number() const { return value_->is_number(); }
+
+std::optional<std::string> Json::string() const {
+  return value_->is_string() ? std::optional(value_->get<std::string>()) : std::nullopt;
+}
+
+std::vector<std::string> Json::keys() const {
+  std::vector<std::string> keys;
+  if (!is_object()) return keys;
+  for (const auto& [key, value] : value_->items()) keys.push_back(key);
+  return keys;
+}
+
+bool Json::has(const std::string& key) const { return value_->contains(key); }
+
+Json Json::operator[](const std::string& key) const {
+  Json json(0);
+  *json.value_ = has(key) ? value_->at(key) : ordered_json();
+  return json;
+}
+
+std::optional<double> Json::number(const std::string& key) const {
+  if (!has(key) || !value_->at(key).is_number()) return std::nullopt;
+  return value_->at(key).get<double>();
+}
+
+std::vector<Json> Json::elements() const {
+  std::vector<Json> list;
+  if (!is_array()) return list;
+  for (const ordered_json& element : *value_) {
+    list.emplace_back(0);
+    *list.back().value_ = element;
+  }
+  return list;
 }
 
 void print(const Json& json) {

@@ -6,6 +6,7 @@
 
 #include "tenon/apps/interrupt.hpp"
 #include "tenon/apps/observers.hpp"
+#include "tenon/apps/report/report.hpp"
 #include "tenon/apps/result_json.hpp"
 #include "tenon/apps/table.hpp"
 #include "tenon/apps/verb.hpp"
@@ -54,7 +55,12 @@ void print_result(const Nlp& problem, const CatalogueEntry& entry, const Measure
 
 }  // namespace
 
-int run_solve(const Arguments& arguments) {
+int run_solve(const Arguments& given) {
+  Arguments arguments = given;
+  if (!arguments.report.empty()) {  // it is made from the trace
+    check_output_path(arguments.report);
+    if (arguments.trace.empty()) arguments.trace = record_beside(arguments.report, ".jsonl");
+  }
   const CatalogueEntry& entry = find_problem(arguments.names.front());
   const std::unique_ptr<Nlp> problem = entry.make();
   Options options = arguments.options();
@@ -63,6 +69,7 @@ int run_solve(const Arguments& arguments) {
   const Measurement m = measure(*problem, arguments.solver ? *arguments.solver : default_solver(), options, suggested_start(*problem), 0);
   if (!m.refusal.empty()) throw std::invalid_argument(m.refusal);
   observers.finish();
+  if (!arguments.report.empty()) write_report({arguments.trace}, arguments.report);
   if (arguments.json)
     print(result_json(*problem, m, options.tolerance));
   else if (!arguments.quiet)

@@ -1,0 +1,19 @@
+// tenon report FILE.csv ...: the report page again, from record files alone.
+#include "tenon/apps/report/report.hpp"
+
+#include <fmt/format.h>
+
+#include "tenon/apps/verb.hpp"
+
+namespace tenon {
+
+int run_report(const Arguments& arguments) {
+  const std::string output = !arguments.report.empty()   ? arguments.report
+                             : !arguments.output.empty() ? arguments.output
+                                                         : record_beside(arguments.names.front(), ".html");
+  write_report(arguments.names, output);
+  if (!arguments.quiet) fmt::print("{}\n", output);
+  return kFinished;
+}
+
+}  // namespace tenon

@@ -1,0 +1,44 @@
+// Fast phases in their own time: a collision that takes no time of the scene, drawn over the time tau that it has for itself.
+//
+// The table has the columns event (number of the event it belongs to, from 1), tau (s) and whatever was recorded over it.
+import uPlot from "uplot";
+import {element, whenSeen} from "./element.js";
+import {duration, number} from "./format.js";
+import {axis} from "./plots.js";
+import {onThemeChange, seriesColor} from "./theme.js";
+
+const kMost = 12;  // pictures
+
+function rowsOf(table) {
+  const phases = new Map();
+  table.numbers("event").forEach((event, k) => phases.set(event, [...(phases.get(event) ?? []), k]));
+  return phases;
+}
+
+function picture(table, rows, name, unitOfTime) {
+  const frame = element("div", {class: "frame", style: "min-height: 120px"});
+  whenSeen(frame, () => {
+    const values = table.numbers(name), tau = table.numbers("tau");
+    const plot = new uPlot({
+      width: Math.max(160, frame.clientWidth), height: 120, pxAlign: false, legend: {show: false}, cursor: {y: false, points: {size: 5}}, scales: {x: {time: false}},
+      axes: [axis({size: 24, values: (_, splits) => splits.map((v) => number(v, 3))}), axis({size: 52, values: (_, splits) => splits.map((v) => number(v, 3))})],
+      series: [{}, {label: name, stroke: () => seriesColor(name.startsWith("lambda") ? 1 : 0), width: 1.4, points: {show: false}}],
+    }, [rows.map((k) => tau[k] / unitOfTime), rows.map((k) => values[k])], frame);
+    onThemeChange(() => plot.redraw(false));
+  });
+  return element("figure", {class: "plot", "aria-label": `${name} over the collision's own time`}, element("figcaption", {}, name), frame);
+}
+
+export function fastPhases(table, events) {
+  const node = element("div", {class: "fast"}, element("h3", {}, "Fast phases, in their own time"));
+  const names = table.names.filter((name) => name !== "event" && name !== "tau");
+  const phases = [...rowsOf(table)];
+  for (const [event, rows] of phases.slice(0, kMost)) {
+    const length = table.numbers("tau")[rows[rows.length - 1]];
+    const unitOfTime = 1000 ** Math.floor(Math.log10(length || 1) / 3), unit = {1: "s", 1e-3: "ms", 1e-6: "µs", 1e-9: "ns"}[Number(unitOfTime.toPrecision(3))] ?? "";
+    node.append(element("div", {class: "phase"}, element("h4", {}, events[event - 1]?.text ?? `event ${event}`, `, lasting ${duration(length)}; τ in ${unit}`),
+                        element("div", {class: "row"}, ...names.map((name) => picture(table, rows, name, unitOfTime)))));
+  }
+  if (phases.length > kMost) node.append(element("p", {class: "facts"}, `the first ${kMost} of ${phases.length}`));
+  return node;
+}
