@@ -14,6 +14,7 @@ packages=(
   libeigen3-dev libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
   coinor-libipopt-dev libnlopt-dev libsundials-dev libamplsolver-dev
   libgtest-dev libgmock-dev libbenchmark-dev
+  chromium  # opens the report page in the tests
 )
 
 install_packages() {

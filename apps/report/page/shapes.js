@@ -65,11 +65,11 @@ function planarOutline(shape) {
 class Paint {
   constructor(theme, role, planar) {
     const Material = planar ? MeshBasicMaterial : MeshLambertMaterial;
-    this.fill = new Material({side: DoubleSide, transparent: planar || role === "ground", depthWrite: !planar && role !== "ground"});
+    this.fill = new Material({side: DoubleSide, vertexColors: planar, transparent: planar || role === "ground", depthWrite: !planar && role !== "ground"});
     this.edge = new LineBasicMaterial({transparent: true});
     theme.add(() => {
       this.fill.color.set(theme.color(role));
-      this.fill.opacity = role === "ground" ? 0.35 : planar ? 0.55 : 1;
+      this.fill.opacity = role === "ground" ? (planar ? 0.6 : 0.35) : planar ? 0.7 : 1;
       this.edge.color.set(theme.color(role === "ground" ? "ground-edge" : role));
       this.edge.opacity = role === "ground" && !planar ? 0.3 : 1;
       if (!planar && role !== "ground") this.edge.color.lerp(theme.shade(), 0.45);
@@ -77,24 +77,47 @@ class Paint {
   }
 }
 
+/// Gives each vertex a brightness and an opacity, (x, y) -> [brightness, opacity].
+function shaded(geometry, shade) {
+  const positions = geometry.getAttribute("position"), colors = [];
+  for (let i = 0; i < positions.count; ++i) {
+    const [brightness, opacity] = shade(positions.getX(i), positions.getY(i));
+    colors.push(brightness, brightness, brightness, opacity);
+  }
+  return geometry.setAttribute("color", new Float32BufferAttribute(colors, 4));
+}
+
+/// Darker toward the lower right of the shape itself, so that it looks like a thing and its turning shows.
+function withDepth(geometry) {
+  geometry.computeBoundingBox();
+  const {min, max} = geometry.boundingBox, size = max.x - min.x + max.y - min.y || 1;
+  return shaded(geometry, (x, y) => [1 - 0.3 * ((x - min.x + max.y - y) / size), 1]);
+}
+
+/// All below a line: a band that fades, and what is below it.
+function planarGround({normal, point}, paint, extent) {
+  const far = 20 * extent, fade = 0.4 * extent, group = new Group();
+  const band = (from, to, opacity) => {
+    const geometry = new PlaneGeometry(2 * far, from - to).translate(0, (from + to) / 2, 0);
+    return new Mesh(shaded(geometry, (x, y) => [1, opacity(y)]), paint.fill);
+  };
+  group.add(band(0, -fade, (y) => 1 + (0.75 * y) / fade), band(-fade, -far, () => 0.25),
+            polyline([new Vector3(-far, 0, 0), new Vector3(far, 0, 0)], false, paint.edge));
+  group.quaternion.setFromUnitVectors(kY, vector(normal).normalize());
+  group.position.copy(vector(point));
+  group.userData.boundless = true;
+  return group;
+}
+
 function planarShape(shape, paint, extent) {
+  if (shape["half-space"]) return planarGround(shape["half-space"], paint, extent);
   const group = new Group();
   if (shape.line) {
-    group.add(new Mesh(ribbon(shape.line.points.map(vector), shape.line.width ?? 0.006 * extent), paint.fill));
-    return group;
-  }
-  if (shape["half-space"]) {
-    const far = 20 * extent;
-    const ground = new Mesh(new PlaneGeometry(2 * far, far), paint.fill);
-    ground.position.y = -far / 2;
-    group.add(ground, polyline([new Vector3(-far, 0, 0), new Vector3(far, 0, 0)], false, paint.edge));
-    group.quaternion.setFromUnitVectors(kY, vector(shape["half-space"].normal).normalize());
-    group.position.copy(vector(shape["half-space"].point));
-    group.userData.boundless = true;
+    group.add(new Mesh(withDepth(ribbon(shape.line.points.map(vector), shape.line.width ?? 0.006 * extent)), paint.fill));
     return group;
   }
   const outline = planarOutline(shape);
-  group.add(new Mesh(new ShapeGeometry(outline, 32), paint.fill));
+  group.add(new Mesh(withDepth(new ShapeGeometry(outline, 32)), paint.fill));
   group.add(polyline(outline.getPoints(32).map((p) => new Vector3(p.x, p.y, 0)), true, paint.edge));
   // A radius shows how a disc turns.
   if (shape.disc) group.add(polyline([new Vector3(), new Vector3(shape.disc.radius, 0, 0)], false, paint.edge));

@@ -7,12 +7,13 @@ import {download, element, whenSeen} from "./element.js";
 import {number} from "./format.js";
 import {Table} from "./table.js";
 
-const kCells = 24;  // of the look-up grid, along each axis
+const kMostCells = 24;  // of the look-up grid, along each axis
 
 /// The nearest of many directions, by a grid of cells over the cube around the sphere.
 class Directions {
   constructor(x, y, z) {
     Object.assign(this, {x, y, z});
+    this.count = Math.min(kMostCells, Math.max(2, Math.floor(Math.sqrt(x.length) / 4)));
     this.cells = new Map();
     for (let k = 0; k < x.length; ++k) {
       const key = this.key(x[k], y[k], z[k]);
@@ -22,21 +23,21 @@ class Directions {
   }
 
   index(v) {
-    return Math.min(kCells - 1, Math.max(0, Math.floor(((v + 1) / 2) * kCells)));
+    return Math.min(this.count - 1, Math.max(0, Math.floor(((v + 1) / 2) * this.count)));
   }
 
   key(x, y, z) {
-    return (this.index(x) * kCells + this.index(y)) * kCells + this.index(z);
+    return (this.index(x) * this.count + this.index(y)) * this.count + this.index(z);
   }
 
   nearest(x, y, z) {
     const [i, j, l] = [this.index(x), this.index(y), this.index(z)];
-    for (let reach = 1; reach <= kCells; reach *= 2) {
+    for (let reach = 1; reach < 2 * this.count; reach *= 2) {
       let best = -1, most = -2;
-      for (let a = Math.max(0, i - reach); a <= Math.min(kCells - 1, i + reach); ++a) {
-        for (let b = Math.max(0, j - reach); b <= Math.min(kCells - 1, j + reach); ++b) {
-          for (let c = Math.max(0, l - reach); c <= Math.min(kCells - 1, l + reach); ++c) {
-            for (const k of this.cells.get((a * kCells + b) * kCells + c) ?? []) {
+      for (let a = Math.max(0, i - reach); a <= Math.min(this.count - 1, i + reach); ++a) {
+        for (let b = Math.max(0, j - reach); b <= Math.min(this.count - 1, j + reach); ++b) {
+          for (let c = Math.max(0, l - reach); c <= Math.min(this.count - 1, l + reach); ++c) {
+            for (const k of this.cells.get((a * this.count + b) * this.count + c) ?? []) {
               const dot = this.x[k] * x + this.y[k] * y + this.z[k] * z;
               if (dot > most) [best, most] = [k, dot];
             }
@@ -44,7 +45,7 @@ class Directions {
         }
       }
       // Whatever lies outside the cells looked at is at least `reach` cells away.
-      if (best >= 0 && 2 - 2 * most <= (2 * reach / kCells) ** 2) return best;
+      if (best >= 0 && 2 - 2 * most <= (2 * reach / this.count) ** 2) return best;
     }
     return -1;
   }
