@@ -9,9 +9,9 @@
 #include "tenon/apps/comma_list.hpp"
 #include "tenon/apps/interrupt.hpp"
 #include "tenon/apps/make_allocator.hpp"
+#include "tenon/apps/make_report.hpp"
 #include "tenon/apps/observers.hpp"
 #include "tenon/apps/progress.hpp"
-#include "tenon/apps/report/report.hpp"
 #include "tenon/apps/verb.hpp"
 #include "tenon/core/csv.hpp"
 #include "tenon/problems/allocation/vehicle_file.hpp"
@@ -72,13 +72,6 @@ class Failures {
   std::vector<bool> rotor_, servo_;
 };
 
-/// Where the record goes: without --output beside the report, else to stdout, unless the summary does as JSON (then nowhere).
-std::string record_path(const Arguments& arguments) {
-  if (!arguments.output.empty()) return arguments.output;
-  if (!arguments.report.empty()) return record_beside(arguments.report, ".csv");
-  return arguments.json ? "" : "-";
-}
-
 void write_scenery(const Vehicle& vehicle, const std::string& record) {
   Scenery scenery = vehicle_scenery(vehicle);
   scenery.title = vehicle.name + ": wrench allocation";
@@ -115,8 +108,9 @@ int run_allocate(const Arguments& arguments) {
     for (const std::string& note : file.notes) fmt::print(stderr, "tenon: {}\n", note);
   }
 
-  const std::string record = record_path(arguments);
-  if (!arguments.report.empty()) check_output_path(arguments.report);
+  // Without --output the record goes beside the report, else to stdout, unless the summary does as JSON.
+  const std::string record = !arguments.output.empty() ? arguments.output : record_beside_report(arguments, ".csv", arguments.json ? "" : "-");
+  check_report(arguments);
   std::optional<CsvWriter> csv;
   if (!record.empty()) csv.emplace(record, column_names(vehicle.num_rotors()));
   AllocationSummary summary(vehicle, solver);
@@ -141,7 +135,7 @@ int run_allocate(const Arguments& arguments) {
   if (csv) csv->finish();
   observers.finish();
   if (record.ends_with(".csv")) write_scenery(vehicle, record);
-  if (!arguments.report.empty()) write_report({record}, arguments.report);
+  make_report(arguments, {record});
   if (arguments.json)
     print(summary.json());
   else if (!arguments.quiet)

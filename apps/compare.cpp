@@ -10,8 +10,8 @@
 
 #include "tenon/apps/comma_list.hpp"
 #include "tenon/apps/interrupt.hpp"
+#include "tenon/apps/make_report.hpp"
 #include "tenon/apps/progress.hpp"
-#include "tenon/apps/report/report.hpp"
 #include "tenon/apps/result_json.hpp"
 #include "tenon/apps/table.hpp"
 #include "tenon/apps/verb.hpp"
@@ -67,8 +67,8 @@ std::vector<SolverDescription> chosen_solvers(const Arguments& arguments, const 
 }
 
 std::optional<CsvWriter> comparison_record(const Arguments& arguments) {
-  if (!arguments.report.empty()) check_output_path(arguments.report);
-  const std::string path = !arguments.output.empty() || arguments.report.empty() ? arguments.output : record_beside(arguments.report, ".csv");
+  check_report(arguments);
+  const std::string path = !arguments.output.empty() ? arguments.output : record_beside_report(arguments, ".csv", "");
   if (path.empty()) return std::nullopt;
   return std::optional<CsvWriter>(std::in_place, path, std::vector<std::string>{"problem", "solver", "status", "objective", "residual", "iterations", "time_s"});
 }
@@ -83,7 +83,7 @@ void write_comparison(CsvWriter& csv, const std::string& problem, const std::str
 
 void finish_comparison(CsvWriter& csv, const Arguments& arguments) {
   csv.finish();
-  if (!arguments.report.empty()) write_report({csv.file().path()}, arguments.report);
+  make_report(arguments, {csv.file().path()});
 }
 
 Json solvers_json(const std::vector<SolverDescription>& solvers) {

@@ -1,9 +1,13 @@
 #include "tenon/apps/json.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <utility>
+
+#include "tenon/core/input_error.hpp"
 
 namespace tenon {
 
@@ -59,26 +63,31 @@ std::string Json::compact_text() const {
   return value_->dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
-Json Json::parse(std::string_view text, const InputPosition& begin) {
-  Json json(0);
+Json Json::parse(const std::string& text, const std::string& file, const std::string& expected) {
   try {
+    Json json(0);
     *json.value_ = ordered_json::parse(text);
+    return json;
   } catch (const ordered_json::parse_error& error) {
-    const std::string_view before = text.substr(0, error.byte > 0 ? error.byte - 1 : 0);
-    const auto lines = static_cast<int>(std::count(before.begin(), before.end(), '\n'));
-    const std::size_t line_begin = lines == 0 ? 0 : before.rfind('\n') + 1;
-    throw InputError({begin.file, std::max(1, begin.line) + lines, static_cast<int>(before.size() - line_begin) + 1}, "this is no JSON",
-                     "an object with keys in double quotes");
+    const std::size_t at = std::min(error.byte > 0 ? error.byte - 1 : 0, text.size());
+    const std::string before = text.substr(0, at);
+    const auto line = static_cast<int>(std::count(before.begin(), before.end(), '\n')) + 1;
+    const auto column = static_cast<int>(at - (before.rfind('\n') + 1)) + 1;
+    throw InputError({file, line, column}, "this is no JSON", expected);
+  } catch (const ordered_json::exception&) {  // a number out of range
+    throw InputError({file, 0, 0}, "a number beyond double precision", expected);
   }
-  return json;
 }
 
-bool Json::is_object() const { return value_->is_object(); }
-bool Json::is_array() const { return value_->is_array(); }
-bool Json::is_number() const { return value_->is_number(); }
+bool Json::has(const std::string& key) const {
+  return value_->is_object() && value_->contains(key);
+}
 
-std::optional<std::string> Json::string() const {
-  return value_->is_string() ? std::optional(value_->get<std::string>()) : std::nullopt;
+Json Json::at(const std::string& key) const {
+  if (!has(key)) throw std::invalid_argument("the key '" + key + "' is missing");
+  Json json(0);
+  *json.value_ = (*value_)[key];
+  return json;
 }
 
 std::vector<std::string> Json::keys() const {
@@ -88,27 +97,39 @@ std::vector<std::string> Json::keys() const {
   return keys;
 }
 
-bool Json::has(const std::string& key) const { return value_->contains(key); }
-
-Json Json::operator[](const std::string& key) const {
-  Json json(0);
-  *json.value_ = has(key) ? value_->at(key) : ordered_json();
-  return json;
-}
-
-std::optional<double> Json::number(const std::string& key) const {
-  if (!has(key) || !value_->at(key).is_number()) return std::nullopt;
-  return value_->at(key).get<double>();
-}
-
 std::vector<Json> Json::elements() const {
   std::vector<Json> list;
-  if (!is_array()) return list;
+  if (!value_->is_array()) return list;
   for (const ordered_json& element : *value_) {
     list.emplace_back(0);
     *list.back().value_ = element;
   }
   return list;
+}
+
+bool Json::is_null() const {
+  return value_->is_null();
+}
+bool Json::is_number() const {
+  return value_->is_number();
+}
+bool Json::is_text() const {
+  return value_->is_string();
+}
+bool Json::is_object() const {
+  return value_->is_object();
+}
+
+double Json::number() const {
+  if (!value_->is_number()) throw std::invalid_argument("a number is missing where " + value_->dump().substr(0, 40) + " stands");
+  const auto value = value_->get<double>();
+  if (!std::isfinite(value)) throw std::invalid_argument("a number is not finite");
+  return value;
+}
+
+std::string Json::as_text() const {
+  if (!value_->is_string()) throw std::invalid_argument("a text is missing where " + value_->dump().substr(0, 40) + " stands");
+  return value_->get<std::string>();
 }
 
 void print(const Json& json) {

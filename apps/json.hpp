@@ -3,13 +3,11 @@
 
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "tenon/core/eigen.hpp"
-#include "tenon/core/input_error.hpp"
 
 namespace tenon {
 
@@ -43,23 +41,22 @@ class Json {
   /// On one line, without blanks.
   std::string compact_text() const;
 
-  /// Parses a text that begins at that position. Throws InputError with the place where it is no JSON.
-  static Json parse(std::string_view text, const InputPosition& begin);
+  /// Throws InputError with the place where the text is no JSON; `file` is the name used in messages, `expected` what should be there.
+  static Json parse(const std::string& text, const std::string& file, const std::string& expected = "a JSON value");
 
-  bool is_object() const;
-  bool is_array() const;
-  bool is_number() const;
-  /// Of a string, else nothing.
-  std::optional<std::string> string() const;
-  /// Of an object, else none and false.
-  std::vector<std::string> keys() const;
+  /// Of an object; at() throws std::invalid_argument, naming the key, where there is none.
   bool has(const std::string& key) const;
-  /// The value under a key, null where an object has none.
-  Json operator[](const std::string& key) const;
-  /// The number under a key, nothing where there is none.
-  std::optional<double> number(const std::string& key) const;
+  Json at(const std::string& key) const;
+  std::vector<std::string> keys() const;
   /// Of an array, else none.
   std::vector<Json> elements() const;
+  bool is_null() const;
+  bool is_number() const;
+  bool is_text() const;
+  bool is_object() const;
+  /// Throw std::invalid_argument where the value is of another type, or a number not finite.
+  double number() const;
+  std::string as_text() const;
 
  private:
   std::unique_ptr<nlohmann::ordered_json> value_;

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "tenon/apps/verb.hpp"
 
 namespace tenon {
@@ -10,7 +12,7 @@ namespace tenon {
 int run_report(const Arguments& arguments) {
   const std::string output = !arguments.report.empty()   ? arguments.report
                              : !arguments.output.empty() ? arguments.output
-                                                         : record_beside(arguments.names.front(), ".html");
+                                                         : std::filesystem::path(arguments.names.front()).replace_extension(".html").string();
   write_report(arguments.names, output);
   if (!arguments.quiet) fmt::print("{}\n", output);
   return kFinished;

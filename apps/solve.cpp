@@ -5,8 +5,9 @@
 #include <stdexcept>
 
 #include "tenon/apps/interrupt.hpp"
+#include "tenon/apps/make_report.hpp"
+#include "tenon/apps/next_step.hpp"
 #include "tenon/apps/observers.hpp"
-#include "tenon/apps/report/report.hpp"
 #include "tenon/apps/result_json.hpp"
 #include "tenon/apps/table.hpp"
 #include "tenon/apps/verb.hpp"
@@ -51,16 +52,15 @@ void print_result(const Nlp& problem, const CatalogueEntry& entry, const Measure
   }
   fmt::print("{}", table.text());
   if (shown < problem.num_variables()) fmt::print("  and {} more: see --json\n", problem.num_variables() - shown);
+  if (!next_step(result.status).empty()) line("next", std::string(next_step(result.status)));
 }
 
 }  // namespace
 
 int run_solve(const Arguments& given) {
   Arguments arguments = given;
-  if (!arguments.report.empty()) {  // it is made from the trace
-    check_output_path(arguments.report);
-    if (arguments.trace.empty()) arguments.trace = record_beside(arguments.report, ".jsonl");
-  }
+  check_report(arguments);
+  if (arguments.trace.empty()) arguments.trace = record_beside_report(arguments, ".jsonl", "");  // the page is made from it
   const CatalogueEntry& entry = find_problem(arguments.names.front());
   const std::unique_ptr<Nlp> problem = entry.make();
   Options options = arguments.options();
@@ -69,7 +69,7 @@ int run_solve(const Arguments& given) {
   const Measurement m = measure(*problem, arguments.solver ? *arguments.solver : default_solver(), options, suggested_start(*problem), 0);
   if (!m.refusal.empty()) throw std::invalid_argument(m.refusal);
   observers.finish();
-  if (!arguments.report.empty()) write_report({arguments.trace}, arguments.report);
+  make_report(arguments, {arguments.trace});
   if (arguments.json)
     print(result_json(*problem, m, options.tolerance));
   else if (!arguments.quiet)

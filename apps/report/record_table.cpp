@@ -20,7 +20,7 @@ struct Signature {
 const std::vector<Signature>& signatures() {
   static const std::vector<Signature> table{
       {RecordKind::events, {"t", "contact", "from", "to"}},   {RecordKind::fast_phases, {"event", "tau"}},
-      {RecordKind::comparison, {"problem", "solver", "status"}}, {RecordKind::profile, {"tau"}},
+      {RecordKind::comparison, {"problem", "solver", "status"}}, {RecordKind::profile, {"cost", "ratio"}},
       {RecordKind::sphere, {"nx", "ny", "nz"}},               {RecordKind::sweep, {"success"}},
       {RecordKind::trajectory, {"t"}},
   };
@@ -33,6 +33,14 @@ std::string first_columns(const CsvTable& table) {
   return text + (table.names.size() > 6 ? ",..." : "");
 }
 
+Json parse_line(const std::string& text, const std::string& file, int line) {
+  try {
+    return Json::parse(text, file, "one JSON object for each iteration");
+  } catch (const InputError& error) {
+    throw InputError({file, line, error.position().column}, "this is no JSON", "one JSON object for each iteration");
+  }
+}
+
 CsvTable read_trace(const std::string& file) {
   CsvTable table;
   table.file = file;
@@ -40,20 +48,20 @@ CsvTable read_trace(const std::string& file) {
   int line = 0;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view content(text.data() + begin, end - begin);
+    const std::string content = text.substr(begin, end - begin);
     begin = end + 1;
     ++line;
-    if (content.find_first_not_of(" \t\r") == std::string_view::npos) continue;
-    const Json iteration = Json::parse(content, {file, line, 0});
+    if (content.find_first_not_of(" \t\r") == std::string::npos) continue;
+    const Json iteration = parse_line(content, file, line);
     if (table.names.empty()) {
       table.names = iteration.keys();
       table.columns.resize(table.names.size());
       table.texts.resize(table.names.size());
     }
     for (std::size_t k = 0; k < table.names.size(); ++k) {
-      const std::optional<double> value = iteration.number(table.names[k]);
-      if (!value && !iteration.has(table.names[k])) throw InputError({file, line, 0}, "'" + table.names[k] + "' is missing", "the keys of the first line");
-      table.columns[k].push_back(value.value_or(std::nan("")));
+      if (!iteration.has(table.names[k])) throw InputError({file, line, 0}, "'" + table.names[k] + "' is missing", "the keys of the first line");
+      const Json value = iteration.at(table.names[k]);
+      table.columns[k].push_back(value.is_number() ? value.number() : std::nan(""));
     }
     table.lines.push_back(line);
   }

@@ -13,7 +13,7 @@ enum class RecordKind {
   events,       // t, contact, from, to
   fast_phases,  // event, tau: collisions in their own time
   comparison,   // problem, solver, status
-  profile,      // tau: a performance profile, one column for each solver
+  profile,      // cost, ratio: performance profiles, one column for each solver
   sphere,       // nx, ny, nz: quantities over unit directions
   sweep,        // success: samples of a Monte Carlo
   trajectory,   // t

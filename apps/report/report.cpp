@@ -129,8 +129,4 @@ void write_report(const std::vector<std::string>& files, const std::string& outp
   file.finish();
 }
 
-std::string record_beside(const std::string& report, const std::string& extension) {
-  return std::filesystem::path(report).replace_extension(extension).string();
-}
-
 }  // namespace tenon

@@ -18,7 +18,4 @@ std::string report_page(const std::vector<std::string>& files);
 /// Writes it. Throws InputError, OutputError.
 void write_report(const std::vector<std::string>& files, const std::string& output);
 
-/// The record that goes with a report where no other was asked for: hover.html has hover.csv.
-std::string record_beside(const std::string& report, const std::string& extension);
-
 }  // namespace tenon

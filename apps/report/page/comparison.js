@@ -57,14 +57,17 @@ export class Comparison {
   }
 }
 
-/// A profile that was computed already: the column tau, then one for each solver.
+/// Profiles that were computed already: for each cost the rows ratio and, for each solver, the share solved within it.
 export class Profile {
   constructor(part, index) {
-    const table = new Table(part), names = table.names.filter((name) => name !== "tau");
-    this.table = table;
+    this.table = new Table(part);
     this.plots = [];
     this.title = "Performance profile";
-    this.node = section(part, index, this.title, profileChart(names, Array.from(table.numbers("tau")), names.map((name) => Array.from(table.numbers(name))),
-                                                              (plot) => this.plots.push({plot})));
+    const {texts: costs, codes} = this.table.texts("cost"), names = this.table.names.filter((name) => name !== "cost" && name !== "ratio");
+    const charts = costs.map((cost, i) => {
+      const of = (name) => Array.from(this.table.numbers(name)).filter((_, k) => codes[k] === i);
+      return element("div", {}, element("h3", {}, `By ${cost}`), profileChart(names, of("ratio"), names.map(of), (plot) => this.plots.push({plot})));
+    });
+    this.node = section(part, index, this.title, element("div", {class: "two"}, ...charts));
   }
 }
