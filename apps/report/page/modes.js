@@ -4,7 +4,7 @@ import {color} from "./theme.js";
 
 const kModeNames = ["free", "collision", "contact"];
 const kModeColors = ["mode-free", "mode-collision", "mode-contact"];
-const kStatusColors = {solved: "mode-free", acceptable: "mode-contact", best_effort: "mode-contact", fallback: "mode-collision"};
+const kStatusColors = {solved: "mode-free", acceptable: "series-4", best_effort: "series-4", fallback: "mode-collision"};
 const kMostLanes = 24;
 const kLaneHeight = 16;
 
