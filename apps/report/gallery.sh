@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Makes the README's pictures in apps/report/gallery from real runs of the program that is built; needs chromium.
+# Makes the README's pictures in apps/report/gallery from real runs of the program that is built; installs chromium where it is missing.
 #
 #   apps/report/gallery.sh [NAME ...]       all pictures, or those named
 #
 # To add one: a line at the end, `picture NAME WIDTHxHEIGHT 'PLACE IN THE PAGE' VERB ...`, where the place is a time and a theme.
 source "$(dirname "$0")/../setup.sh"
 
+install_packages "${test_packages[@]}"
 tenon=build/release/tenon
 pictures=apps/report/gallery
 pages=build/gallery
