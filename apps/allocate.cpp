@@ -72,12 +72,10 @@ class Failures {
   std::vector<bool> rotor_, servo_;
 };
 
-void write_scenery(const Vehicle& vehicle, const std::string& record) {
+Scenery scenery_of(const Vehicle& vehicle) {
   Scenery scenery = vehicle_scenery(vehicle);
   scenery.title = vehicle.name + ": wrench allocation";
-  OutputFile file(scenery_path(record));
-  file.append(scenery.json());
-  file.finish();
+  return scenery;
 }
 
 Options allocation_options(const Arguments& arguments, const SolverChoice& choice, Observers& observers) {
@@ -134,7 +132,7 @@ int run_allocate(const Arguments& arguments) {
   }
   if (csv) csv->finish();
   observers.finish();
-  if (record.ends_with(".csv")) write_scenery(vehicle, record);
+  write_scenery(scenery_of(vehicle), record);
   make_report(arguments, {record});
   if (arguments.json)
     print(summary.json());

@@ -148,7 +148,7 @@ CsvTable parse_csv(std::string_view text, const std::string& file, const CsvColu
     table.lines.push_back(line);
   }
   if (width == 0) throw InputError({file, 1, 1}, "the file is empty", "a header line of column names and rows of numbers");
-  if (table.lines.empty()) throw InputError({file, 2, 1}, "there is no row below the header", "rows of numbers");
+  if (table.lines.empty() && !wanted.texts) throw InputError({file, 2, 1}, "there is no row below the header", "rows of numbers");
   return table;
 }
 

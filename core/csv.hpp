@@ -32,7 +32,7 @@ struct CsvTable {
 struct CsvColumns {
   std::vector<std::string> required;
   std::vector<std::string> optional;
-  bool texts = false;  // as records have them: a column whose first cell is no number holds texts, an empty cell of another is NaN
+  bool texts = false;  // as records have them: a column whose first cell is no number holds texts, an empty cell of another is NaN, no rows are rows
 };
 
 /// Reads a file. Throws InputError at the first thing that is wrong: a file that cannot be read or is empty, a required column that is

@@ -2,6 +2,8 @@
 
 #include <charconv>
 
+#include "tenon/core/output_file.hpp"
+
 namespace tenon {
 
 namespace {
@@ -90,7 +92,7 @@ std::string json_of(const SceneryArrow& arrow) {
     object.set("vector", json_list(arrow.vector));
   else
     object.set("sum", json_list(arrow.sum));
-  if (arrow.in_world_axes) object.set("frame", quoted("world"));
+  if (!arrow.frame.empty()) object.set("frame", quoted(arrow.frame));
   return object.json();
 }
 
@@ -172,6 +174,13 @@ std::string Scenery::json() const {
 
 std::string scenery_path(const std::string& record) {
   return (record.ends_with(".csv") ? record.substr(0, record.size() - 4) : record) + ".scene.json";
+}
+
+void write_scenery(const Scenery& scenery, const std::string& record) {
+  if (!record.ends_with(".csv")) return;
+  OutputFile file(scenery_path(record));
+  file.append(scenery.json());
+  file.finish();
 }
 
 }  // namespace tenon

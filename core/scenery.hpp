@@ -90,8 +90,8 @@ struct SceneryArrow {
   std::string name = {};
   Kind kind = Kind::force;
   SceneryPoint at = {};
-  SceneryVector vector = {};          // N, N m or m/s, in the axes of the body; in the world's where none is named or in_world_axes
-  bool in_world_axes = false;
+  SceneryVector vector = {};          // N, N m or m/s, in the axes of the frame
+  std::string frame = {};             // a body, or "world"; where it is not said, the body of the point
   std::vector<std::string> sum = {};  // names of earlier arrows: this one is their sum, `vector` is not read
 };
 
@@ -121,5 +121,8 @@ struct Scenery {
 
 /// Where the scenery of a record lies: run.csv has run.scene.json.
 std::string scenery_path(const std::string& record);
+
+/// Writes it there, where the record is a .csv file; a pipe or a device has nothing beside it. Throws OutputError.
+void write_scenery(const Scenery& scenery, const std::string& record);
 
 }  // namespace tenon

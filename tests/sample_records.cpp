@@ -13,12 +13,6 @@ namespace {
 
 constexpr double kGravity = 9.81;
 
-void write_scenery(const std::string& record, const Scenery& scenery) {
-  OutputFile file(scenery_path(record));
-  file.append(scenery.json());
-  file.finish();
-}
-
 void write_row(CsvWriter& csv, const std::vector<double>& values) {
   for (const double v : values) csv << v;
   csv.end_row();
@@ -94,7 +88,7 @@ SampleRecord write_bouncing_ball(const ScratchFolder& folder, const std::string&
   scenery.bodies = {{.name = "floor", .shapes = {SceneryShape::half_space({0, 1, 0})}},
                     {.name = "ball", .position = {0, "x1"}, .shapes = {SceneryShape::disc(kRadius).at({0, kRadius, 0})}}};
   scenery.arrows = {{.name = "floor's force", .at = {.body = "ball"}, .vector = {0, "lambda_floor"}}};
-  write_scenery(files[0], scenery);
+  write_scenery(scenery, files[0]);
   return files;
 }
 
@@ -129,7 +123,7 @@ SampleRecord write_cradle(const ScratchFolder& folder) {
                               .shapes = {SceneryShape::line({{0, 0, 0}, {0, -kLength, 0}}).colored("link"),
                                          SceneryShape::disc(kRadius).at({0, -kLength, 0})}});
   }
-  write_scenery(files[0], scenery);
+  write_scenery(scenery, files[0]);
   return files;
 }
 
@@ -158,7 +152,7 @@ SampleRecord write_long_flight(const ScratchFolder& folder) {
                     {.name = "load", .parent = "box", .position = {0, 0, SceneryValue("u1", {-0.2, -0.05})}, .shapes = {SceneryShape::sphere(0.06)}}};
   scenery.links = {{.kind = SceneryLink::Kind::spring, .from = {.body = "box"}, .to = {.body = "load"}}};
   scenery.arrows = {{.name = "lift", .at = {.body = "box"}, .vector = {0, 0, "u1"}}};
-  write_scenery(files[0], scenery);
+  write_scenery(scenery, files[0]);
   return files;
 }
 

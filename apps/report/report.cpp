@@ -38,7 +38,10 @@ std::vector<Part> read_parts(const std::vector<std::string>& files) {
   for (const std::string& file : files) {
     CsvTable table = read_record(file);
     const RecordKind kind = record_kind(table);
-    if (kind != RecordKind::events && kind != RecordKind::fast_phases) {
+    const bool belongs = kind == RecordKind::events || kind == RecordKind::fast_phases;
+    if (table.rows() == 0 && belongs) continue;  // a run in which nothing touched
+    if (table.rows() == 0) throw InputError({file, 2, 1}, "there is no row below the header", "rows of numbers");
+    if (!belongs) {
       if (kind == RecordKind::trajectory) check_time(table);
       parts.push_back({std::move(table), kind, {}, {}});
       continue;

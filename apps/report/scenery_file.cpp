@@ -64,6 +64,7 @@ class Check {
   void arrow(const std::string& at, const Json& json) {
     point(at, json);
     vector(at + ".vector", member(json, "vector"));
+    if (json.has("frame") && !(json.at("frame").is_text() && json.at("frame").as_text() == "world")) one_of(at + ".frame", json.at("frame"), bodies_);
     for (const Json& part : member(json, "sum").elements()) one_of(at + ".sum", part, arrows_);
     arrows_.push_back(name(at, json));
   }

@@ -225,9 +225,10 @@ export class Animation {
     const width = frame.clientWidth, height = frame.clientHeight;
     this.renderer.setSize(width, height);
     if (this.planar) {
-      const size = this.scenery.camera?.extent ? new Vector3(this.extent, this.extent * 0.5, 0) : this.box.getSize(new Vector3());
-      const room = 0.08 * this.extent;
-      const half = Math.max(size.y / 2 + room, ((size.x / 2 + room) * height) / width);
+      const size = this.box.getSize(new Vector3()), {x, y} = this.up, room = 0.08 * this.extent, asked = this.scenery.camera?.extent;
+      // How wide and how high the box is, seen with `up` upward.
+      const wide = asked ?? Math.abs(y) * size.x + Math.abs(x) * size.y, high = asked ? asked / 2 : Math.abs(x) * size.x + Math.abs(y) * size.y;
+      const half = Math.max(high / 2 + room, ((wide / 2 + room) * height) / width);
       Object.assign(this.camera, {left: (-half * width) / height, right: (half * width) / height, top: half, bottom: -half});
     } else {
       this.camera.aspect = width / height;

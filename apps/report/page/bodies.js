@@ -56,7 +56,7 @@ export class Link {
   constructor(json, bodies, table, planar, extent, theme) {
     this.from = new Anchor(json.from, bodies, table);
     this.to = new Anchor(json.to, bodies, table);
-    const width = json.width ?? (json.kind === "rod" ? 0.014 : 0.008) * extent;
+    const width = json.width ?? (json.kind === "rod" ? 0.009 : 0.006) * extent;
     const material = new MeshBasicMaterial({side: DoubleSide});
     theme.add(() => material.color.set(theme.color(json.color ?? "link")));
     this.alongX = planar || json.kind === "spring";
@@ -86,7 +86,7 @@ export class Arrow {
     this.json = json;
     this.kind = json.kind ?? "force";
     this.anchor = new Anchor(json, bodies, table);
-    this.frame = json.frame === "world" ? undefined : this.anchor.body;
+    this.frame = json.frame === undefined ? this.anchor.body : bodies.get(json.frame);  // none: the world's axes
     this.parts = json.sum?.map((name) => arrows.get(name));
     this.components = bindVector(json.vector, table);
     this.scale = json.scale;  // m of picture per unit

@@ -8,7 +8,7 @@ const kKinds = [
   [/^tau\d+$/, "Torques", "N m", 1],
   [/^a\d+$/, "Arm angles", "rad", 2],
   [/^gap_/, "Gaps", "m", 3],
-  [/^lambda_/, "Contact forces", "N", 4],
+  [/^lambda_/, "Forces of contacts and joints", "N", 4],
   [/^(energy|kinetic|potential)$/, "Energy", "J", 5],
   [/^energy_error$/, "Energy audit", "J", 5],
   [/^work_/, "Work", "J", 6],

@@ -68,21 +68,29 @@ export function lanesPlugin(lanes, time) {
   }}};
 }
 
+/// What any contact does, row by row: 1 where one collides, else 2 where one holds, else 0.
+function strongest(lanes, rows) {
+  const values = new Uint8Array(rows);
+  for (const {runs} of lanes) {
+    for (const {from, to, value} of runs) {
+      for (let k = from; k < to && value !== 0; ++k) values[k] = value === 1 ? 1 : values[k] || value;
+    }
+  }
+  return values;
+}
+
 /// A tint behind a plot: collision where any contact collides, contact where any holds.
 export function bandPlugin(lanes, time) {
-  const contacts = lanes.filter((lane) => lane.isContact);
+  const runs = runsOf(strongest(lanes.filter((lane) => lane.isContact), time.length)).filter((run) => run.value !== 0);
   return {hooks: {drawClear: (u) => {
     const {ctx, bbox} = u;
     ctx.save();
     ctx.globalAlpha = 0.16;
-    for (const lane of contacts) {
-      for (const run of lane.runs) {
-        if (run.value === 0) continue;
-        const [x, width] = span(u, time, run);
-        if (width <= 0) continue;
-        ctx.fillStyle = color(lane.color(run.value));
-        ctx.fillRect(x, bbox.top, width, bbox.height);
-      }
+    for (const run of runs) {
+      const [x, width] = span(u, time, run);
+      if (width <= 0) continue;
+      ctx.fillStyle = color(kModeColors[run.value]);
+      ctx.fillRect(x, bbox.top, width, bbox.height);
     }
     ctx.restore();
   }}};

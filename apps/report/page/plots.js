@@ -113,7 +113,7 @@ export class Plots {
   }
 
   makeLanes(group, frame, height, lanes) {
-    const names = lanes.map(({name}) => (name.length > 9 ? name.slice(0, 8) + "…" : name));
+    const names = lanes.map(({name}) => (name.length > 8 ? name.slice(0, 7) + "…" : name));
     this.add(group, frame, {
       height,
       legend: {show: false},
