@@ -74,7 +74,7 @@ TEST_F(Report, TellsRecordsByTheirColumns) {
   };
   EXPECT_EQ(kind("t,x1"), RecordKind::trajectory);
   EXPECT_EQ(kind("t,contact,from,to,gap"), RecordKind::events);
-  EXPECT_EQ(kind("event,tau,gap_a"), RecordKind::fast_phases);
+  EXPECT_EQ(kind("t,contact,tau,gap"), RecordKind::fast_phases);
   EXPECT_EQ(kind("problem,solver,status,time_s"), RecordKind::comparison);
   EXPECT_EQ(kind("cost,ratio,ipopt"), RecordKind::profile);
   EXPECT_EQ(kind("nx,ny,nz,force"), RecordKind::sphere);

@@ -32,8 +32,8 @@ std::vector<Flight> flights(double restitution) {
   return list;
 }
 
-/// h(tau) = -(v/w_d) exp(-zeta w tau) sin(w_d tau), of a linear law with restitution e and contact time t_c; the force is -(h'' of unit mass).
-void write_fast_phase(CsvWriter& csv, int event, double speed, double restitution, double contact_time) {
+/// h(tau) = -(v/w_d) exp(-zeta w tau) sin(w_d tau), of a linear law with restitution e and contact time t_c.
+void write_fast_phase(CsvWriter& csv, double t, double speed, double restitution, double contact_time) {
   // e = exp(-2 zeta acos(zeta)/sqrt(1-zeta^2)), by bisection; t_c = 2 acos(zeta)/(w sqrt(1-zeta^2))
   double low = 0, high = 0.999;
   for (int k = 0; k < 60; ++k) {
@@ -44,7 +44,8 @@ void write_fast_phase(CsvWriter& csv, int event, double speed, double restitutio
   for (int k = 0; k <= 60; ++k) {
     const double tau = contact_time * k / 60, decay = std::exp(-zeta * w * tau), s = std::sin(damped * tau), c = std::cos(damped * tau);
     const double h = -speed / damped * decay * s, rate = -speed * decay * (c - zeta / root * s);
-    write_row(csv, {static_cast<double>(event), tau, h, rate, std::max(0.0, -w * w * h - 2 * zeta * w * rate)});
+    csv << t << "floor";
+    write_row(csv, {tau, h, rate, -w * w * h - 2 * zeta * w * rate});
   }
 }
 
@@ -55,7 +56,7 @@ SampleRecord write_bouncing_ball(const ScratchFolder& folder, const std::string&
   const SampleRecord files{folder.path("ball.csv"), folder.path("ball_events.csv"), folder.path("ball_fast.csv")};
   CsvWriter csv(files[0], {"t", "x1", "vx1", "lambda_floor", "gap_floor", "mode_floor", "energy"});
   CsvWriter events(files[1], {"t", "contact", "from", "to", "gap", "gap_rate_before", "gap_rate_after", "impulse", "energy_before", "energy_after"});
-  CsvWriter fast(files[2], {"event", "tau", "gap_floor", "gap_rate_floor", "lambda_floor"});
+  CsvWriter fast(files[2], {"t", "contact", "tau", "gap", "gap_rate", "gap_acceleration"});
 
   const std::vector<Flight> all = flights(kRestitution);
   int number = 0;
@@ -75,7 +76,7 @@ SampleRecord write_bouncing_ball(const ScratchFolder& folder, const std::string&
                          from == 0 ? before * before / 2 : (rests ? 0 : after * after / 2)});
     }
     ++number;
-    if (number <= 3) write_fast_phase(fast, 2 * number - 1, before, kRestitution, 0.01);
+    if (number <= 3) write_fast_phase(fast, impact, before, kRestitution, 0.01);
   }
   write_row(csv, {all.back().begin, 0, 0, kGravity, 0, 2, 0});
   for (; next <= kEnd; next += kStep) write_row(csv, {next, 0, 0, kGravity, 0, 2, 0});

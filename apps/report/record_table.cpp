@@ -19,7 +19,7 @@ struct Signature {
 /// The first whose columns are all there.
 const std::vector<Signature>& signatures() {
   static const std::vector<Signature> table{
-      {RecordKind::events, {"t", "contact", "from", "to"}},   {RecordKind::fast_phases, {"event", "tau"}},
+      {RecordKind::events, {"t", "contact", "from", "to"}},   {RecordKind::fast_phases, {"t", "contact", "tau"}},
       {RecordKind::comparison, {"problem", "solver", "status"}}, {RecordKind::profile, {"cost", "ratio"}},
       {RecordKind::sphere, {"nx", "ny", "nz"}},               {RecordKind::sweep, {"success"}},
       {RecordKind::trajectory, {"t"}},

@@ -11,7 +11,7 @@ namespace tenon {
 /// What a file of columns can be, by the columns that tell:
 enum class RecordKind {
   events,       // t, contact, from, to
-  fast_phases,  // event, tau: collisions in their own time
+  fast_phases,  // t, contact, tau: collisions in their own time
   comparison,   // problem, solver, status
   profile,      // cost, ratio: performance profiles, one column for each solver
   sphere,       // nx, ny, nz: quantities over unit directions

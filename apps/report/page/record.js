@@ -109,7 +109,7 @@ export class Record {
       details.addEventListener("toggle", () => details.children.length === 1 && details.append(make()), {once: true});
       made.push(details);
     };
-    if (part.fast_phases) made.push(fastPhases(new Table(part.fast_phases), this.events));
+    if (part.fast_phases) made.push(fastPhases(new Table(part.fast_phases)));
     if (this.eventsTable) folded(`Events (${this.eventsTable.rows})`, () => this.eventRows());
     folded(`Columns (${this.table.names.length})`, () => columnsTable(this.table));
     return made;
