@@ -9,11 +9,13 @@
 #include "tenon/apps/comma_list.hpp"
 #include "tenon/apps/interrupt.hpp"
 #include "tenon/apps/make_allocator.hpp"
+#include "tenon/apps/make_report.hpp"
 #include "tenon/apps/observers.hpp"
 #include "tenon/apps/progress.hpp"
 #include "tenon/apps/verb.hpp"
 #include "tenon/core/csv.hpp"
 #include "tenon/problems/allocation/vehicle_file.hpp"
+#include "tenon/problems/allocation/vehicle_scenery.hpp"
 #include "tenon/problems/allocation/wrench_log.hpp"
 
 namespace tenon {
@@ -70,6 +72,12 @@ class Failures {
   std::vector<bool> rotor_, servo_;
 };
 
+Scenery scenery_of(const Vehicle& vehicle) {
+  Scenery scenery = vehicle_scenery(vehicle);
+  scenery.title = vehicle.name + ": wrench allocation";
+  return scenery;
+}
+
 Options allocation_options(const Arguments& arguments, const SolverChoice& choice, Observers& observers) {
   Options options = arguments.options();
   if (!arguments.tolerance && choice.tolerance) options.tolerance = *choice.tolerance;
@@ -98,10 +106,11 @@ int run_allocate(const Arguments& arguments) {
     for (const std::string& note : file.notes) fmt::print(stderr, "tenon: {}\n", note);
   }
 
-  // Without --output the record itself goes to stdout, unless the summary does as JSON.
+  // Without --output the record goes beside the report, else to stdout, unless the summary does as JSON.
+  const std::string record = !arguments.output.empty() ? arguments.output : record_beside_report(arguments, ".csv", arguments.json ? "" : "-");
+  check_report(arguments);
   std::optional<CsvWriter> csv;
-  if (!arguments.output.empty() || !arguments.json)
-    csv.emplace(arguments.output.empty() ? "-" : arguments.output, column_names(vehicle.num_rotors()));
+  if (!record.empty()) csv.emplace(record, column_names(vehicle.num_rotors()));
   AllocationSummary summary(vehicle, solver);
   Failures failures(vehicle);
   {
@@ -117,16 +126,18 @@ int run_allocate(const Arguments& arguments) {
     }
   }
   if (interrupted()) {
-    if (csv && !arguments.output.empty())
+    if (csv && record != "-")
       fmt::print(stderr, "tenon: interrupted, {} rows are in {}\n", csv->rows(), csv->file().partial_path());
     return kInterrupted;
   }
   if (csv) csv->finish();
   observers.finish();
+  write_scenery(scenery_of(vehicle), record);
+  make_report(arguments, {record});
   if (arguments.json)
     print(summary.json());
   else if (!arguments.quiet)
-    fmt::print(arguments.output.empty() ? stderr : stdout, "{}", summary.text());
+    fmt::print(record == "-" ? stderr : stdout, "{}", summary.text());
   return kFinished;
 }
 

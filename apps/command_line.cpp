@@ -30,6 +30,7 @@ const std::map<std::string, std::function<CLI::Option*(CLI::App&, Arguments&)>>&
       {"fast-phase",
        [](App& a, Args& v) { return a.add_option("--fast-phase", v.fast_phase, "collisions in their own time scale")->type_name("FILE.csv"); }},
       {"real-time", [](App& a, Args& v) { return a.add_flag("--real-time", v.real_time, "paced as the clock on the wall"); }},
+      {"report", [](App& a, Args& v) { return a.add_option("--report", v.report, "the report page of what came out")->type_name("FILE.html"); }},
       {"trace", [](App& a, Args& v) { return a.add_option("--trace", v.trace, "one line per solver iteration")->type_name("FILE.jsonl"); }},
       {"dump",
        [](App& a, Args& v) { return a.add_option("--dump", v.dump, "where a solve that fails goes, for replay")->type_name("FILE.json"); }},

@@ -5,10 +5,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "tenon/apps/comma_list.hpp"
 #include "tenon/apps/interrupt.hpp"
+#include "tenon/apps/make_report.hpp"
 #include "tenon/apps/named_problem.hpp"
 #include "tenon/apps/progress.hpp"
 #include "tenon/apps/result_json.hpp"
@@ -64,6 +66,26 @@ std::vector<SolverDescription> chosen_solvers(const Arguments& arguments, const 
   return chosen;
 }
 
+std::optional<CsvWriter> comparison_record(const Arguments& arguments) {
+  check_report(arguments);
+  const std::string path = !arguments.output.empty() ? arguments.output : record_beside_report(arguments, ".csv", "");
+  if (path.empty()) return std::nullopt;
+  return std::optional<CsvWriter>(std::in_place, path, std::vector<std::string>{"problem", "solver", "status", "objective", "residual", "iterations", "time_s"});
+}
+
+void write_comparison(CsvWriter& csv, const std::string& problem, const std::string& solver, std::string_view status, double objective, double residual,
+                      int iterations, double time) {
+  csv << problem << solver << status;
+  for (const double value : {objective, residual}) std::isfinite(value) ? csv << value : csv << "";
+  csv << iterations << time;
+  csv.end_row();
+}
+
+void finish_comparison(CsvWriter& csv, const Arguments& arguments) {
+  csv.finish();
+  make_report(arguments, {csv.file().path()});
+}
+
 Json solvers_json(const std::vector<SolverDescription>& solvers) {
   Json list = Json::array();
   for (const SolverDescription& s : solvers) {
@@ -92,6 +114,7 @@ int run_compare(const Arguments& arguments) {
   Table table({"problem", "solver", "status", "objective", "residual", "iterations", "evaluations", "time"});
   Json rows = Json::array();
   std::vector<std::string> refusals;
+  std::optional<CsvWriter> record = comparison_record(arguments);
   {
     Progress progress("compare", std::ssize(arguments.names) * std::ssize(solvers), arguments.quiet);
     long done = 0;
@@ -100,6 +123,10 @@ int run_compare(const Arguments& arguments) {
         if (interrupted()) return kInterrupted;
         const Measurement m = measure(named, solver.name, options, kTimedRuns);
         table.add(table_row(named.name, m));
+        if (record && m.refusal.empty()) {
+          write_comparison(*record, named.name, solver.name, to_string(m.result.status), m.result.objective, m.result.residual.max(),
+                           m.result.iterations, m.time);
+        }
         if (!m.refusal.empty()) {
           refusals.push_back(fmt::format("{} on {}: {}", named.name, solver.name, m.refusal));
           rows.push(Json::object().set("problem", named.name).set("solver", solver.name).set("refusal", m.refusal));
@@ -112,6 +139,7 @@ int run_compare(const Arguments& arguments) {
       }
     }
   }
+  if (record) finish_comparison(*record, arguments);
   if (arguments.json) {
     print(Json::object()
               .set("schema", 1)

@@ -1,11 +1,14 @@
 // The parts of `tenon compare` that the problems of a catalogue and the rows of a vehicle share.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tenon/apps/arguments.hpp"
 #include "tenon/apps/json.hpp"
+#include "tenon/core/csv.hpp"
 #include "tenon/solvers/make_solver.hpp"
 
 namespace tenon {
@@ -13,6 +16,13 @@ namespace tenon {
 /// Of the `known` back ends those of --solvers, else every one that is available. Throws std::invalid_argument for one that is not known
 /// or not available.
 std::vector<SolverDescription> chosen_solvers(const Arguments& arguments, const std::vector<SolverDescription>& known = list_solvers());
+
+/// The record of a comparison: where --output says, else beside the report; nothing where neither is asked for. Both paths are checked.
+std::optional<CsvWriter> comparison_record(const Arguments& arguments);
+void write_comparison(CsvWriter& csv, const std::string& problem, const std::string& solver, std::string_view status, double objective, double residual,
+                      int iterations, double time);
+/// Closes the record and makes the report that is asked for.
+void finish_comparison(CsvWriter& csv, const Arguments& arguments);
 
 /// As the record of a comparison has them: name, description, options.
 Json solvers_json(const std::vector<SolverDescription>& solvers);

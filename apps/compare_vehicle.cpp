@@ -49,6 +49,7 @@ int compare_vehicle(const std::string& name, const Arguments& arguments) {
   std::vector<std::string> names;
   for (const SolverDescription& s : solvers) names.push_back(s.name);
   RowComparison comparison(names, options.tolerance);
+  std::optional<CsvWriter> record = comparison_record(arguments);
   {
     Progress progress("compare", std::ssize(rows), arguments.quiet);
     long done = 0;
@@ -58,13 +59,19 @@ int compare_vehicle(const std::string& name, const Arguments& arguments) {
       start.x << row.throttle, row.angle;
       for (std::size_t s = 0; s < names.size(); ++s) {
         if (interrupted()) return kInterrupted;
-        comparison.add(s, names[s] == kNewtonKkt ? problem->measure_fixed_size(start, kTimedRuns)
-                                                 : measure(problem->lifted(), names[s] == kNewtonKktSparse ? kNewtonKkt : names[s], options,
-                                                           start, kTimedRuns));
+        const Measurement m = names[s] == kNewtonKkt ? problem->measure_fixed_size(start, kTimedRuns)
+                                                     : measure(problem->lifted(), names[s] == kNewtonKktSparse ? kNewtonKkt : names[s], options,
+                                                               start, kTimedRuns);
+        comparison.add(s, m);
+        if (record && m.refusal.empty()) {
+          write_comparison(*record, fmt::format("row {}", done + 1), names[s], to_string(m.result.status), m.result.objective,
+                           m.result.residual.max(), m.result.iterations, m.time);
+        }
       }
       progress.update(++done);
     }
   }
+  if (record) finish_comparison(*record, arguments);
   if (arguments.json) {
     print(Json::object()
               .set("schema", 1)

@@ -79,7 +79,7 @@ void write_dump(const std::string& path, const NamedProblem& named, const Option
 }
 
 NamedProblem read_dump(const std::string& path) {
-  const Json json = Json::parse(read_file(path), path);
+  const Json json = Json::parse(read_file(path), path, "an object as `tenon solve --dump` writes it");
   try {
     if (json.at("schema").number() != kSchema) throw std::invalid_argument("'schema' is not " + std::to_string(kSchema));
     const std::string name = json.at("problem").as_text();

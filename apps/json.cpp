@@ -55,7 +55,15 @@ Json& Json::push(const Json& value) {
   return *this;
 }
 
-Json Json::parse(const std::string& text, const std::string& file) {
+std::string Json::text() const {
+  return value_->dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string Json::compact_text() const {
+  return value_->dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+Json Json::parse(const std::string& text, const std::string& file, const std::string& expected) {
   try {
     Json json(0);
     *json.value_ = ordered_json::parse(text);
@@ -65,9 +73,9 @@ Json Json::parse(const std::string& text, const std::string& file) {
     const std::string before = text.substr(0, at);
     const auto line = static_cast<int>(std::count(before.begin(), before.end(), '\n')) + 1;
     const auto column = static_cast<int>(at - (before.rfind('\n') + 1)) + 1;
-    throw InputError({file, line, column}, "this is no JSON", "an object as `tenon solve --dump` writes it");
+    throw InputError({file, line, column}, "this is no JSON", expected);
   } catch (const ordered_json::exception&) {  // a number out of range
-    throw InputError({file, 0, 0}, "a number beyond double precision", "an object as `tenon solve --dump` writes it");
+    throw InputError({file, 0, 0}, "a number beyond double precision", expected);
   }
 }
 
@@ -82,8 +90,34 @@ Json Json::at(const std::string& key) const {
   return json;
 }
 
+std::vector<std::string> Json::keys() const {
+  std::vector<std::string> keys;
+  if (!is_object()) return keys;
+  for (const auto& [key, value] : value_->items()) keys.push_back(key);
+  return keys;
+}
+
+std::vector<Json> Json::elements() const {
+  std::vector<Json> list;
+  if (!value_->is_array()) return list;
+  for (const ordered_json& element : *value_) {
+    list.emplace_back(0);
+    *list.back().value_ = element;
+  }
+  return list;
+}
+
 bool Json::is_null() const {
   return value_->is_null();
+}
+bool Json::is_number() const {
+  return value_->is_number();
+}
+bool Json::is_text() const {
+  return value_->is_string();
+}
+bool Json::is_object() const {
+  return value_->is_object();
 }
 
 double Json::number() const {
@@ -107,10 +141,6 @@ Vector Json::as_vector() const {
     values[k] = entry.number();
   }
   return values;
-}
-
-std::string Json::text() const {
-  return value_->dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 void print(const Json& json) {

@@ -1,4 +1,4 @@
-// A JSON value: what `--json` prints, and what a dump is read from. Keys keep the order in which they were set; a non-finite number becomes null.
+// A JSON value, to be written (what `--json` prints) or as it was read. Keys keep their order; a non-finite number becomes null.
 #pragma once
 
 #include <memory>
@@ -36,20 +36,28 @@ class Json {
   /// Of an array.
   Json& push(const Json& value);
 
-  /// Throws InputError with the place where the text is no JSON; `file` is the name used in messages.
-  static Json parse(const std::string& text, const std::string& file);
+  /// With line breaks and an indentation of 2, ending with a newline.
+  std::string text() const;
+  /// On one line, without blanks.
+  std::string compact_text() const;
 
-  /// Of an object; throws std::invalid_argument, naming the key, where there is none.
+  /// Throws InputError with the place where the text is no JSON; `file` is the name used in messages, `expected` what should be there.
+  static Json parse(const std::string& text, const std::string& file, const std::string& expected = "a JSON value");
+
+  /// Of an object; at() throws std::invalid_argument, naming the key, where there is none.
   bool has(const std::string& key) const;
   Json at(const std::string& key) const;
-  /// Throw std::invalid_argument where the value is of another type, or a number not finite.
+  std::vector<std::string> keys() const;
+  /// Of an array, else none.
+  std::vector<Json> elements() const;
   bool is_null() const;
+  bool is_number() const;
+  bool is_text() const;
+  bool is_object() const;
+  /// Throw std::invalid_argument where the value is of another type, or a number not finite.
   double number() const;
   std::string as_text() const;
   Vector as_vector() const;
-
-  /// With line breaks and an indentation of 2, ending with a newline.
-  std::string text() const;
 
  private:
   std::unique_ptr<nlohmann::ordered_json> value_;

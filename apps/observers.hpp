@@ -15,8 +15,8 @@ namespace tenon {
 /// One JSON object and a newline: a line of a trace, with the row it belongs to where that is not negative.
 std::string trace_line(const Iteration& iteration, long row = -1);
 
-/// One line of the iteration table; index 0 brings the header.
-std::string table_line(const Iteration& iteration);
+/// One line of the iteration table; index 0 brings the header. With colours, for a terminal, a residual within the tolerance is green.
+std::string table_line(const Iteration& iteration, double tolerance, bool with_colors);
 
 class Observers {
  public:
@@ -34,6 +34,8 @@ class Observers {
 
  private:
   bool verbose_;
+  bool with_colors_;
+  double tolerance_;
   long row_ = -1;
   std::unique_ptr<OutputFile> trace_;
   std::exception_ptr failure_;  // of writing the trace; thrown by finish()

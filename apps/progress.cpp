@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tenon {
 
@@ -12,6 +13,14 @@ namespace {
 constexpr double kFirstShown = 1.0;  // s after the start
 constexpr double kInterval = 0.1;    // s between two pictures
 constexpr int kWidth = 30;
+
+/// "42 s", "3:20 min", "1:05 h".
+std::string time_left(double seconds) {
+  const long whole = std::lround(seconds);
+  if (whole < 100) return fmt::format("{} s", whole);
+  if (whole < 6000) return fmt::format("{}:{:02} min", whole / 60, whole % 60);
+  return fmt::format("{}:{:02} h", whole / 3600, whole / 60 % 60);
+}
 
 }  // namespace
 
@@ -33,7 +42,7 @@ void Progress::show(long done) {
   const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(total_));
   const int filled = static_cast<int>(share * kWidth);
   const double left = done > 0 ? elapsed * (1 - share) / share : 0;
-  fmt::print(stderr, "\r{} [{:=<{}}{:<{}}] {:3.0f} %, {:.0f} s left\x1b[K", what_, "", filled, "", kWidth - filled, 100 * share, left);
+  fmt::print(stderr, "\r{} [{:=<{}}{:<{}}] {:3.0f} %, {} left\x1b[K", what_, "", filled, "", kWidth - filled, 100 * share, time_left(left));
 }
 
 }  // namespace tenon

@@ -1,6 +1,6 @@
 # What demo.sh and tests/run.sh share; sourced by both. Leaves the shell in the project's folder, with three verbs:
 #
-#   install_packages      installs the Debian packages that are missing, and asks the network only then
+#   install_packages [PACKAGE ...]   installs the Debian packages that are missing, these too, and asks the network only then
 #   configure PRESET      one of CMakePresets.json
 #   build PRESET [...]    on all cores that memory allows; further words go to `cmake --build`
 #
@@ -15,6 +15,7 @@ packages=(
   coinor-libipopt-dev libnlopt-dev libsundials-dev libsuitesparse-dev libamplsolver-dev
   libgtest-dev libgmock-dev libbenchmark-dev
 )
+test_packages=(chromium)  # opens the report page
 
 install_packages() {
   if ! command -v apt-get dpkg-query > /dev/null; then
@@ -22,7 +23,7 @@ install_packages() {
     return
   fi
   local missing=() package as_root=()
-  for package in "${packages[@]}"; do
+  for package in "${packages[@]}" "$@"; do
     dpkg-query --show --showformat '${db:Status-Status}\n' "$package" 2> /dev/null | grep -qx installed || missing+=("$package")
   done
   if ((${#missing[@]} == 0)); then return; fi

@@ -8,6 +8,8 @@
 #include "tenon/apps/default_solver.hpp"
 #include "tenon/apps/dump.hpp"
 #include "tenon/apps/interrupt.hpp"
+#include "tenon/apps/make_report.hpp"
+#include "tenon/apps/next_step.hpp"
 #include "tenon/apps/observers.hpp"
 #include "tenon/apps/result_json.hpp"
 #include "tenon/apps/table.hpp"
@@ -72,11 +74,15 @@ void print_result(const NamedProblem& named, const Measurement& m) {
   }
   fmt::print("{}", table.text());
   if (shown < problem.num_variables()) fmt::print("  and {} more: see --json\n", problem.num_variables() - shown);
+  if (!next_step(result.status).empty()) line("next", std::string(next_step(result.status)));
 }
 
 }  // namespace
 
-int run_solve(const Arguments& arguments) {
+int run_solve(const Arguments& given) {
+  Arguments arguments = given;
+  check_report(arguments);
+  if (arguments.trace.empty()) arguments.trace = record_beside_report(arguments, ".jsonl", "");  // the page is made from it
   NamedProblem named = load_problem(arguments.names.front());
   Options options = arguments.options(named.options);
   const std::string solver = arguments.solver ? *arguments.solver : default_solver();
@@ -89,6 +95,7 @@ int run_solve(const Arguments& arguments) {
   if (!m.refusal.empty()) throw std::invalid_argument(m.refusal);
   observers.finish();
   if (!arguments.dump.empty() && !succeeded(m.result.status)) write_dump(arguments.dump, named, options, m);
+  make_report(arguments, {arguments.trace});
   if (arguments.json) {
     Json json = result_json(*named.problem, m);
     if (tried) json.set("starts", starts_json(*tried));

@@ -10,6 +10,7 @@ int run_fit(const Arguments&);
 int run_list(const Arguments&);
 int run_robot(const Arguments&);
 int run_simulate(const Arguments&);
+int run_report(const Arguments&);
 int run_solve(const Arguments&);
 
 const std::vector<Verb>& verbs() {
@@ -20,7 +21,7 @@ const std::vector<Verb>& verbs() {
        "VEHICLE",
        1,
        1,
-       {"wrenches", "output", "solver", "set", "cold", "initial", "tolerance", "max-iterations", "time-limit", "trace", "json", "quiet",
+       {"wrenches", "output", "report", "solver", "set", "cold", "initial", "tolerance", "max-iterations", "time-limit", "trace", "json", "quiet",
         "verbose"},
        &run_allocate},
       {"robot",
@@ -43,16 +44,17 @@ const std::vector<Verb>& verbs() {
        "PROBLEM",
        1,
        1,
-       {"solver", "tolerance", "max-iterations", "time-limit", "starts", "seed", "trace", "dump", "json", "quiet", "verbose"},
+       {"solver", "tolerance", "max-iterations", "time-limit", "starts", "seed", "trace", "dump", "report", "json", "quiet", "verbose"},
        &run_solve},
       {"compare",
        "the same problem on every back end, judged by one ruler",
        "PROBLEM... or --profile DIR",
        0,
        -1,
-       {"solvers", "set", "rows", "seed", "tolerance", "max-iterations", "time-limit", "profile", "output", "json", "quiet"},
+       {"solvers", "set", "rows", "seed", "tolerance", "max-iterations", "time-limit", "profile", "output", "report", "json", "quiet"},
        &run_compare},
       {"check", "derivatives against differences, pattern, bounds, start", "PROBLEM", 1, 1, {"seed", "tolerance", "json"}, &run_check},
+      {"report", "the report page again, from record files alone", "FILE.csv...", 1, -1, {"output", "report", "quiet"}, &run_report},
       {"bench", "benchmark rows: median, p99, machine, versions", "[NAME]", 0, 1, {"json", "quiet"}, &run_bench},
   };
   return table;

@@ -46,15 +46,20 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-double number(const Cell& cell, const std::string& name, const InputPosition& position) {
-  std::string_view text = cell.text;
+/// Parses a whole cell; std::errc::invalid_argument where it is no number.
+std::errc parse_number(std::string_view text, double& value) {
   if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end != text.data() + text.size() ? std::errc::invalid_argument : error;
+}
+
+double number(const Cell& cell, const std::string& name, const InputPosition& position) {
+  double value = 0;
+  const std::errc error = parse_number(cell.text, value);
   const std::string what = "column '" + name + "' holds '" + std::string(cell.text) + "'";
-  if (text.empty()) throw InputError(position, "column '" + name + "' is empty", "a number");
+  if (cell.text.empty()) throw InputError(position, "column '" + name + "' is empty", "a number");
   if (error == std::errc::result_out_of_range) throw InputError(position, what, "a number within the range of double precision");
-  if (error != std::errc() || end != text.data() + text.size()) throw InputError(position, what, "a number");
+  if (error != std::errc()) throw InputError(position, what, "a number");
   if (!std::isfinite(value)) throw InputError(position, what, "a finite number");
   return value;
 }
@@ -76,7 +81,7 @@ std::vector<std::size_t> chosen_columns(const std::vector<Cell>& header, int lin
                        "at least the columns " + joined(wanted.required));
     }
   }
-  const bool all = wanted.required.empty() && wanted.optional.empty();
+  const bool all = wanted.texts || (wanted.required.empty() && wanted.optional.empty());
   const auto is_wanted = [&](const std::string& name) {
     return all || std::count(wanted.required.begin(), wanted.required.end(), name) > 0 ||
            std::count(wanted.optional.begin(), wanted.optional.end(), name) > 0;
@@ -88,6 +93,7 @@ std::vector<std::size_t> chosen_columns(const std::vector<Cell>& header, int lin
     table.names.push_back(names[k]);
   }
   table.columns.resize(chosen.size());
+  table.texts.resize(chosen.size());
   return chosen;
 }
 
@@ -129,12 +135,20 @@ CsvTable parse_csv(std::string_view text, const std::string& file, const CsvColu
                        std::to_string(width) + ", as the header");
     }
     for (std::size_t k = 0; k < chosen.size(); ++k) {
-      table.columns[k].push_back(number(cells[chosen[k]], table.names[k], {file, line, cells[chosen[k]].column}));
+      const Cell& cell = cells[chosen[k]];
+      double value = 0;
+      const bool is_first = table.lines.empty();
+      const bool holds_texts = wanted.texts && (is_first ? !cell.text.empty() && parse_number(cell.text, value) == std::errc::invalid_argument
+                                                         : !table.texts[k].empty());
+      if (holds_texts)
+        table.texts[k].emplace_back(cell.text);
+      else
+        table.columns[k].push_back(wanted.texts && cell.text.empty() ? std::nan("") : number(cell, table.names[k], {file, line, cell.column}));
     }
     table.lines.push_back(line);
   }
   if (width == 0) throw InputError({file, 1, 1}, "the file is empty", "a header line of column names and rows of numbers");
-  if (table.lines.empty()) throw InputError({file, 2, 1}, "there is no row below the header", "rows of numbers");
+  if (table.lines.empty() && !wanted.texts) throw InputError({file, 2, 1}, "there is no row below the header", "rows of numbers");
   return table;
 }
 

@@ -17,6 +17,7 @@ struct CsvTable {
   std::string file;
   std::vector<std::string> names;            // of the columns read
   std::vector<std::vector<double>> columns;  // columns[k][row], as long as rows()
+  std::vector<std::vector<std::string>> texts;  // texts[k][row] in place of columns[k] where column k holds texts, see CsvColumns
   std::vector<int> lines;                    // line of each row in the file, from 1
 
   int rows() const { return static_cast<int>(lines.size()); }
@@ -27,10 +28,11 @@ struct CsvTable {
   const std::vector<double>& operator[](std::string_view name) const;
 };
 
-/// Which columns to read; all others are skipped, whatever stands in them. With both lists empty every column is read.
+/// Which columns to read; all others are skipped, whatever stands in them. With both lists empty, or with texts, every column is read.
 struct CsvColumns {
   std::vector<std::string> required;
   std::vector<std::string> optional;
+  bool texts = false;  // as records have them: a column whose first cell is no number holds texts, an empty cell of another is NaN, no rows are rows
 };
 
 /// Reads a file. Throws InputError at the first thing that is wrong: a file that cannot be read or is empty, a required column that is

@@ -9,7 +9,7 @@
 source "$(dirname "$0")/../apps/setup.sh"
 
 preset=${1:-release}
-install_packages
+install_packages "${test_packages[@]}"
 configure "$preset"
 build "$preset"
 ctest --preset "$preset" --label-exclude long "${@:2}"

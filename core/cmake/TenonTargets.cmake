@@ -54,7 +54,7 @@ function(tenon_embed name)
     get_filename_component(stem ${file} NAME_WE)
     string(APPEND entries "    {\"${stem}\", R\"EMBEDDED(${text})EMBEDDED\"},\n")
   endforeach()
-  set(EMBED_ENTRIES ${entries})
+  set(EMBED_ENTRIES "${entries}")  # quoted: a text may hold semicolons
   configure_file(${PROJECT_SOURCE_DIR}/core/cmake/embedded.cpp.in ${CMAKE_CURRENT_BINARY_DIR}/${EMBED_FUNCTION}.cpp @ONLY)
   target_sources(tenon-${name} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/${EMBED_FUNCTION}.cpp)
 endfunction()

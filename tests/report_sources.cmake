@@ -1,0 +1,13 @@
+# The bundled page is of the sources that lie beside it: cmake -D REPORT_DIR=apps/report -P report_sources.cmake
+file(GLOB sources RELATIVE ${REPORT_DIR}/page ${REPORT_DIR}/page/*)
+list(SORT sources)
+set(digests "")
+foreach(name ${sources})
+  file(SHA256 ${REPORT_DIR}/page/${name} digest)
+  string(APPEND digests "${name} ${digest}\n")
+endforeach()
+string(SHA256 digest "${digests}")
+file(STRINGS ${REPORT_DIR}/bundle/page.html line LIMIT_COUNT 1 REGEX "from sources ${digest}")
+if(NOT line)
+  message(FATAL_ERROR "apps/report/page has changed since apps/report/bundle/page.html was made: run apps/report/bundle.sh")
+endif()
