@@ -50,8 +50,9 @@ void expect_solves(Kkt& kkt, const HessianType& hessian, const JacobianType& jac
     const long allocations = counter.count();
     EXPECT_EQ(allocations, 0) << kind << ", " << instance.name;
     EXPECT_TRUE(dx.allFinite() && dlambda.allFinite()) << kind << ", " << instance.name;
-    // a singular matrix shows in its pivots or, rarely, in the residual alone
-    if (expected && expected->zero > 0 && inertia.zero == 0 && relative_residual > 1e-4) continue;
+    // a singular matrix shows in its pivots or, rarely, in the residual alone; so does one of which the eigenvalues do not say what it is
+    const bool regular = expected && expected->zero == 0;
+    if (!regular && inertia.zero == 0 && relative_residual > 1e-4) continue;
     if (expected) {
       EXPECT_EQ(inertia, *expected) << kind << ", " << instance.name << ": " << text(inertia) << " for " << text(*expected);
     }

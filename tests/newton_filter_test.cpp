@@ -32,8 +32,8 @@ TEST(Filter, AcceptsWhatIsBetterByTheMarginInOneOfTheTwo) {
   filter.add(2, 3);
   EXPECT_TRUE(filter.accepts(2 * (1 - 1.1e-5), 100));
   EXPECT_FALSE(filter.accepts(2 * (1 - 0.9e-5), 100));
-  EXPECT_TRUE(filter.accepts(100, 3 - 2 * 1.1e-8));
-  EXPECT_FALSE(filter.accepts(100, 3 - 2 * 0.9e-8));
+  EXPECT_TRUE(filter.accepts(100, 3 - 2 * 1.1e-6));
+  EXPECT_FALSE(filter.accepts(100, 3 - 2 * 0.9e-6));
 }
 
 TEST(Filter, DropsEntriesThatANewOneDominates) {

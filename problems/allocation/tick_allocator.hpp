@@ -40,7 +40,7 @@ class TickAllocator final : public Allocator {
   TickAllocator(const Vehicle& vehicle, const Options& options, Make&& make)
       : linear_(vehicle),
         problem_(vehicle),
-        solver_(make(std::as_const(problem_), with_warm_start(options, true, vehicle.hard_limits ? kMaxHardIterations : kMaxSoftIterations))),
+        solver_(make(std::as_const(problem_), with_warm_start(options, true, kMaxWarmIterations))),
         rescue_(make(std::as_const(problem_), with_warm_start(options, false, kMaxIterations))),
         hard_limits_(vehicle.hard_limits) {
     for (int i = 0; i < N; ++i) {
@@ -249,7 +249,7 @@ class TickAllocator final : public Allocator {
   }
 
   static constexpr int kMaxIterations = 60;
-  static constexpr int kMaxHardIterations = 10, kMaxSoftIterations = 14;  // of the first attempt
+  static constexpr int kMaxWarmIterations = 14;
   static constexpr int kMaxSettlings = 3;
   static constexpr double kSettling = 0.1;           // what is out of reach does not settle
   static constexpr double kStiffness = 1e6;          // an attainable wrench gives way by 1e-6 times the change of the multipliers

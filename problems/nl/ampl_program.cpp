@@ -112,6 +112,7 @@ class AslAtX {
     x_.setConstant(n_var, kNaN);
     weights_.setZero(n_obj);
     gradient_.setZero(n_var);
+    values_.setZero(n_con);
     jacobian_.resize(static_cast<std::size_t>(nzc));
   }
   ~AslAtX() { ASL_free(&asl); }
@@ -122,7 +123,7 @@ class AslAtX {
   bool move_to(ConstVectorRef x) {
     if (x == x_) return evaluates_;
     x_ = x;
-    has_gradient_ = has_jacobian_ = false;
+    has_value_ = has_values_ = has_gradient_ = has_jacobian_ = false;
     fint error = 0;
     xunknown();
     xknowne(x_.data(), &error);
@@ -132,9 +133,13 @@ class AslAtX {
   double objective(int k) {
     fint error = 0;
     const double value = objval(k, x_.data(), &error);
-    return error == 0 ? value : kNaN;
+    has_value_ = error == 0;
+    return has_value_ ? value : kNaN;
   }
+  /// The library ends the program where it has no value to differentiate, so values are seen to before derivatives.
   void gradient(int k, VectorRef out) {
+    if (!has_value_) objective(k);
+    if (!has_value_) return set_nan(out);
     fint error = 0;
     objgrd(k, x_.data(), out.data(), &error);
     has_gradient_ = error == 0;
@@ -143,9 +148,12 @@ class AslAtX {
   void constraints(VectorRef out) {
     fint error = 0;
     conval(x_.data(), out.data(), &error);
-    if (error != 0) set_nan(out);
+    has_values_ = error == 0;
+    if (!has_values_) set_nan(out);
   }
   void jacobian(std::span<double> out) {
+    if (!has_values_) constraints(values_);
+    if (!has_values_) return set_nan(out);
     fint error = 0;
     jacval(x_.data(), out.data(), &error);
     has_jacobian_ = error == 0;
@@ -166,9 +174,10 @@ class AslAtX {
  private:
   Vector x_;
   bool evaluates_ = false;
-  bool has_gradient_ = false, has_jacobian_ = false;  // evaluated at x_, without an error
+  bool has_value_ = false, has_values_ = false;       // of the objective and the rows, at x_, without an error
+  bool has_gradient_ = false, has_jacobian_ = false;  // likewise
   Vector weights_;                                    // of the objectives
-  Vector gradient_;                                   // what nobody asked for but the Hessian
+  Vector values_, gradient_;                          // what nobody asked for but the Hessian
   std::vector<double> jacobian_;                      // likewise
 };
 
