@@ -121,7 +121,7 @@ class ContactDae final : public Dae {
   bool has_friction_ = false, has_one_law_ = false, is_ballistic_ = true;  // is_ballistic_: between contacts nothing acts but gravity
 };
 
-/// The part of x that one body has, filled up where it has not all freedoms.
+/// Poses and motions of all bodies, filled up where one has not all freedoms, and what the solve for multipliers works on.
 template <int D>
 struct ContactDae<D>::Bodies : Dae::Scratch {
   double t = 0;
@@ -139,7 +139,6 @@ struct ContactDae<D>::Bodies : Dae::Scratch {
   Eigen::PartialPivLU<Eigen::MatrixXd> lu;
   Vector rhs, lambda;
   int defect = 0;  // of the rank of H M^-1 H'
-  Vector scratch_x, scratch_xdot, scratch_y;
 };
 
 extern template class ContactDae<2>;

@@ -68,7 +68,7 @@ SceneFile parse_scene(const std::string& text, const std::string& file, const st
     s.duration = positive(values, *simulation, "duration", s.duration);
     s.output_step = positive(values, *simulation, "output_step", s.output_step);
     s.rtol = positive(values, *simulation, "rtol", s.rtol);
-    s.atol = positive(values, *simulation, "atol", std::min(s.atol, 1e-2 * s.rtol));
+    s.atol = positive(values, *simulation, "atol", 1e-2 * s.rtol);
     s.integrator = simulation->text("integrator", s.integrator);
   }
   const auto named = [&](auto scene) {
