@@ -12,7 +12,7 @@ namespace tenon {
 
 struct Arguments {
   std::vector<std::string> names;  // the words that are no flags: problems, a vehicle, a file
-  std::string wrenches, output, report, trace;
+  std::string wrenches, output, report, events, fast_phase, trace;
   std::optional<std::string> solver, solvers, initial;
   std::vector<std::string> set;
   std::optional<double> tolerance, time_limit;
@@ -20,7 +20,7 @@ struct Arguments {
   std::uint64_t seed = 1;
   int rows = 0;
   int degree = 2;
-  bool constant = false, cold = false, json = false, quiet = false, verbose = false;
+  bool constant = false, cold = false, real_time = false, json = false, quiet = false, verbose = false;
 
   /// The solver options that were given; the others as they are by default.
   Options options() const {

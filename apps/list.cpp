@@ -12,6 +12,7 @@
 #include "tenon/core/nearest_name.hpp"
 #include "tenon/problems/allocation/vehicle_file.hpp"
 #include "tenon/problems/catalogue.hpp"
+#include "tenon/problems/contact/scene_file.hpp"
 #include "tenon/solvers/make_solver.hpp"
 
 namespace tenon {
@@ -46,13 +47,19 @@ std::vector<Named> solvers() {
   return list;
 }
 
+std::vector<Named> scenes() {
+  std::vector<Named> list;
+  for (const std::string& name : contact::builtin_scenes()) list.push_back({name, contact::describe_builtin_scene(name)});
+  return list;
+}
+
 std::vector<Named> none() {
   return {};
 }
 
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> table{{"problems", &problems}, {"vehicles", &vehicles}, {"missions", &none},
-                                       {"scenes", &none},       {"robots", &none},       {"solvers", &solvers}};
+                                       {"scenes", &scenes},     {"robots", &none},       {"solvers", &solvers}};
   return table;
 }
 

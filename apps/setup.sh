@@ -12,7 +12,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 packages=(
   g++ cmake ninja-build ccache pkg-config
   libeigen3-dev libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
-  coinor-libipopt-dev libnlopt-dev libsundials-dev libamplsolver-dev
+  coinor-libipopt-dev libnlopt-dev libsundials-dev libsuitesparse-dev libamplsolver-dev
   libgtest-dev libgmock-dev libbenchmark-dev
 )
 test_packages=(chromium)  # opens the report page

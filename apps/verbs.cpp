@@ -9,6 +9,7 @@ int run_compare(const Arguments&);
 int run_fit(const Arguments&);
 int run_list(const Arguments&);
 int run_report(const Arguments&);
+int run_simulate(const Arguments&);
 int run_solve(const Arguments&);
 
 const std::vector<Verb>& verbs() {
@@ -23,6 +24,13 @@ const std::vector<Verb>& verbs() {
         "verbose"},
        &run_allocate},
       {"fit", "thrust and torque polynomials from calibration data", "BENCH.csv", 1, 1, {"degree", "constant", "json"}, &run_fit},
+      {"simulate",
+       "a scene in time: bodies, contacts, events, energy",
+       "SCENE",
+       1,
+       1,
+       {"output", "events", "fast-phase", "solver", "set", "tolerance", "json", "quiet", "real-time"},
+       &run_simulate},
       {"solve",
        "one nonlinear program",
        "PROBLEM",

@@ -86,6 +86,25 @@ struct Table::Node {
   }
 };
 
+namespace {
+
+/// The list under a key, of exactly `size` entries where that is not 0.
+const toml::array& list_of(const Table& table, const toml::node& value, const std::string& path, std::size_t size,
+                           const InputError& no_list, const std::string& key, const std::string& expected) {
+  const toml::array* array = value.as_array();
+  if (array == nullptr) throw no_list;
+  if (size != 0 && array->size() != size) {
+    throw InputError(table.position(key), "'" + path + "' has " + std::to_string(array->size()) + " entries", expected);
+  }
+  return *array;
+}
+
+std::string expected_list(const std::string& what, std::size_t size) {
+  return size == 0 ? "a list of " + what : "a list of " + std::to_string(size) + " " + what;
+}
+
+}  // namespace
+
 bool Table::has(const std::string& key) const {
   return node_->table->contains(key);
 }
@@ -120,15 +139,41 @@ std::string Table::text(const std::string& key) const {
 }
 
 std::vector<double> Table::numbers(const std::string& key, std::size_t size) const {
-  const std::string expected = size == 0 ? "a list of numbers" : "a list of " + std::to_string(size) + " numbers";
+  const std::string expected = expected_list("numbers", size);
   const toml::node& value = node_->require(key);
-  const toml::array* array = value.as_array();
-  if (array == nullptr) throw node_->wrong(key, value, expected);
-  if (size != 0 && array->size() != size) {
-    throw InputError(position(key), "'" + node_->path_of(key) + "' has " + std::to_string(array->size()) + " entries", expected);
-  }
   std::vector<double> list;
-  for (const toml::node& entry : *array) list.push_back(node_->finite(key + "." + std::to_string(list.size() + 1), entry, expected));
+  for (const toml::node& entry : list_of(*this, value, node_->path_of(key), size, node_->wrong(key, value, expected), key, expected))
+    list.push_back(node_->finite(key + "." + std::to_string(list.size() + 1), entry, expected));
+  return list;
+}
+
+Table::NumberOrText Table::number_or_text(const std::string& key) const {
+  const toml::node& value = node_->require(key);
+  if (value.is_string()) return {std::nullopt, **value.as_string()};
+  return {node_->finite(key, value, "a number, or an expression in quotes"), ""};
+}
+
+std::vector<Table::NumberOrText> Table::numbers_or_texts(const std::string& key, std::size_t size) const {
+  const std::string expected = expected_list("numbers or expressions", size);
+  const toml::node& value = node_->require(key);
+  std::vector<NumberOrText> list;
+  for (const toml::node& entry : list_of(*this, value, node_->path_of(key), size, node_->wrong(key, value, expected), key, expected)) {
+    if (entry.is_string())
+      list.push_back({std::nullopt, **entry.as_string()});
+    else
+      list.push_back({node_->finite(key + "." + std::to_string(list.size() + 1), entry, expected), ""});
+  }
+  return list;
+}
+
+std::vector<std::string> Table::texts(const std::string& key, std::size_t size) const {
+  const std::string expected = expected_list("texts", size);
+  const toml::node& value = node_->require(key);
+  std::vector<std::string> list;
+  for (const toml::node& entry : list_of(*this, value, node_->path_of(key), size, node_->wrong(key, value, expected), key, expected)) {
+    if (!entry.is_string()) throw node_->wrong(key + "." + std::to_string(list.size() + 1), entry, "text in quotes");
+    list.push_back(**entry.as_string());
+  }
   return list;
 }
 

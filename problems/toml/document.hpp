@@ -35,6 +35,17 @@ class Table {
   /// A list of numbers of any length; of exactly `size` where that is not 0.
   std::vector<double> numbers(const std::string& key, std::size_t size = 0) const;
 
+  /// A number, or text that stands for one: what a reader evaluates itself.
+  struct NumberOrText {
+    std::optional<double> number;
+    std::string text;
+  };
+  NumberOrText number_or_text(const std::string& key) const;
+  /// A list of them, of any length; of exactly `size` where that is not 0.
+  std::vector<NumberOrText> numbers_or_texts(const std::string& key, std::size_t size = 0) const;
+  /// A list of texts, of exactly `size` where that is not 0.
+  std::vector<std::string> texts(const std::string& key, std::size_t size = 0) const;
+
   /// The table under a key, nothing where there is none. With no known keys given, any key goes.
   std::optional<Table> table(const std::string& key, const std::vector<std::string>& known_keys = {}) const;
   /// The [[key]] tables in the order of the file, none where there are none.

@@ -1,0 +1,300 @@
+#include "tenon/problems/contact/fast_phase.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tenon::contact {
+
+namespace {
+
+constexpr double kStandsStill = 1e-10;     // m/s: slower closing is none
+constexpr double kRank = 1e-12;            // relative: a held contact that depends on others carries nothing of its own
+constexpr double kStepsOfAContact = 4000;  // of the compliant laws, over one contact time
+constexpr double kMostContactTimes = 400;
+
+using Matrix = Eigen::MatrixXd;
+
+class Resolution {
+ public:
+  Resolution(const Matrix& A, const Vector& w, const std::vector<Touching>& touching, int tangents)
+      : A_(A), touching_(touching), k_(static_cast<int>(touching.size())), tangents_(tangents) {
+    out_.rates = w;
+    out_.impulses.setZero(w.size());
+    out_.works.setZero(w.size());
+    for (const Touching& t : touching) out_.is_held.push_back(t.is_held);
+  }
+
+  /// Pairs one after another, the fastest closing first, ties from the lowest index.
+  FastPhase sequential(bool holds_all_touching) {
+    for (int k = 0; k < kMostMicroEvents; ++k) {
+      int fastest = -1;
+      bool is_fast = false;
+      for (int i = 0; i < k_; ++i) {
+        const double closing = -out_.rates[i];
+        if (closing <= kStandsStill) continue;
+        is_fast |= closing >= touching_[at(i)].rest_speed;
+        if (fastest < 0 || closing > -out_.rates[fastest] * (1 + 1e-12)) fastest = i;
+      }
+      if (fastest < 0) return std::move(out_);
+      if (!is_fast) {
+        settle(fastest);
+        return std::move(out_);
+      }
+      collide(fastest, holds_all_touching);
+    }
+    out_.failure = "the fast phase does not end within " + std::to_string(kMostMicroEvents) + " collisions";
+    return std::move(out_);
+  }
+
+  /// Every touching contact a spring and damper of its own:  lambda = m (w^2 delta^power + 2 zeta w deltadot), while it is positive.
+  FastPhase compliant(double power) {
+    const int k = k_;
+    Vector stiffness(k), damping(k), delta = Vector::Zero(k), rates = out_.rates.head(k);
+    const Matrix A = A_.topLeftCorner(k, k);
+    double shortest = touching_.front().contact_time;
+    for (int i = 0; i < k; ++i) {
+      const Touching& t = touching_[at(i)];
+      const Law law = law_of(std::max(t.restitution, 1e-6), t.contact_time);
+      stiffness[i] = law.alpha0 / A(i, i);
+      damping[i] = law.alpha1 / A(i, i);
+      shortest = std::min(shortest, t.contact_time);
+    }
+    // Hertz's spring as stiff as the linear one where the linear one would be deepest
+    const double speed = std::max(1e-12, -rates.minCoeff());
+    if (power != 1) {
+      for (int i = 0; i < k; ++i) stiffness[i] /= std::pow(speed * shortest / 4, power - 1);
+    }
+    const auto forces = [&](const Vector& d, const Vector& w, Vector& lambda) {
+      for (int i = 0; i < k; ++i) {
+        const double f = d[i] > 0 ? stiffness[i] * std::pow(d[i], power) -
+                                        damping[i] * w[i] * (power == 1 ? 1 : std::pow(d[i] / (speed * shortest / 4), power - 1))
+                                  : 0;
+        lambda[i] = std::max(f, 0.0);
+      }
+    };
+    const double h = shortest / kStepsOfAContact;
+    Vector l1(k), l2(k), l3(k), l4(k), d(k), w(k);
+    const Vector before = rates, start = out_.rates;
+    for (long step = 0; step < static_cast<long>(kMostContactTimes * kStepsOfAContact); ++step) {
+      forces(delta, rates, l1);
+      if (step > 0 && l1.maxCoeff() <= 0 && rates.minCoeff() >= -kStandsStill) {
+        finish_compliant(before, static_cast<double>(step) * h);
+        return std::move(out_);
+      }
+      // classical Runge-Kutta on deltadot = -w, wdot = A lambda
+      const Vector w1 = rates;
+      d = delta - 0.5 * h * w1, w = rates + 0.5 * h * (A * l1);
+      forces(d, w, l2);
+      const Vector w2 = w;
+      d = delta - 0.5 * h * w2, w = rates + 0.5 * h * (A * l2);
+      forces(d, w, l3);
+      const Vector w3 = w;
+      d = delta - h * w3, w = rates + h * (A * l3);
+      forces(d, w, l4);
+      const Vector lambda = (l1 + 2 * l2 + 2 * l3 + l4) / 6;
+      delta -= h / 6 * (w1 + 2 * w2 + 2 * w3 + w);
+      rates += h * (A * lambda);
+      out_.impulses.head(k) += h * lambda;
+      out_.works.head(k) += h * lambda.cwiseProduct(rates - 0.5 * h * (A * lambda));
+      out_.rates = start + A_.leftCols(k) * out_.impulses.head(k);
+    }
+    out_.failure = "the compliant fast phase does not end within " + std::to_string(static_cast<int>(kMostContactTimes)) + " contact times";
+    return std::move(out_);
+  }
+
+ private:
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+  void finish_compliant(const Vector& before, double time) {
+    for (int i = 0; i < before.size(); ++i) {
+      out_.is_held[at(i)] = 0;
+      if (out_.impulses[i] > 0) out_.events.push_back({i, time, before[i], out_.rates[i], out_.impulses[i], out_.works[i]});
+    }
+  }
+
+  enum class Tangent { absent, sticks, slides };
+
+  void collide(int n, bool holds_all_touching) {
+    std::vector<int> chosen{n};  // n, then the contacts held
+    for (int i = 0; i < k_; ++i) {
+      const bool stands = std::abs(out_.rates[i]) <= kStandsStill;
+      if (i != n && (out_.is_held[at(i)] || (holds_all_touching && stands))) chosen.push_back(i);
+    }
+    std::vector<Tangent> tangent(touching_.size(), Tangent::absent);
+    for (const int i : chosen) {
+      if (tangents_ > 0 && touching_[at(i)].friction > 0) tangent[at(i)] = Tangent::sticks;
+    }
+    const double e = -out_.rates[n] < touching_[at(n)].rest_speed ? 0 : touching_[at(n)].restitution;
+    for (;;) {
+      const Vector p = impulse(n, e, chosen, tangent);
+      if (!(p[n] > 0) || !((out_.rates + A_ * p)[n] >= -(e * out_.rates[n]) - 1e-9 * std::abs(out_.rates[n]))) {
+        if (chosen.size() == 1) return apply(n, -(1 + e) * out_.rates[n] / A_(n, n) * Vector::Unit(p.size(), n), e);
+        chosen.resize(1);  // it cannot move while those are held: they take their share afterwards
+        continue;
+      }
+      const auto worst = std::min_element(chosen.begin() + 1, chosen.end(), [&](int i, int j) { return p[i] < p[j]; });
+      if (worst != chosen.end() && p[*worst] < -1e-12 * p[n] && !holds_all_touching) {
+        out_.is_held[at(*worst)] = 0;
+        tangent[at(*worst)] = Tangent::absent;
+        chosen.erase(worst);
+        continue;
+      }
+      const auto slips = std::find_if(chosen.begin(), chosen.end(), [&](int i) {
+        return tangent[at(i)] == Tangent::sticks &&
+               p.segment(k_ + i * tangents_, tangents_).norm() > touching_[at(i)].friction * p[i] * (1 + 1e-9);
+      });
+      if (slips == chosen.end()) return apply(n, p, e);
+      tangent[at(*slips)] = Tangent::slides;
+    }
+  }
+
+  /// The impulses that reverse contact n by e, keep the held ones still and the sticking tangents at rest.  (16)
+  Vector impulse(int n, double e, const std::vector<int>& chosen, const std::vector<Tangent>& tangent) const {
+    const int size = static_cast<int>(A_.rows());
+    std::vector<int> rows;      // what must come to a given speed
+    std::vector<Vector> along;  // one unit of each unknown, over all rows
+    Vector target(size * 2);
+    for (const int i : chosen) {
+      Vector unit = Vector::Unit(size, i);
+      if (tangent[at(i)] == Tangent::slides) {
+        const auto slip = out_.rates.segment(k_ + i * tangents_, tangents_);
+        if (slip.norm() > 0) unit.segment(k_ + i * tangents_, tangents_) = -touching_[at(i)].friction * slip.normalized();
+      }
+      target[static_cast<int>(rows.size())] = i == n ? -(1 + e) * out_.rates[n] : -out_.rates[i];
+      rows.push_back(i);
+      along.push_back(unit);
+    }
+    for (const int i : chosen) {
+      if (tangent[at(i)] != Tangent::sticks) continue;
+      for (int t = k_ + i * tangents_; t < k_ + (i + 1) * tangents_; ++t) {
+        target[static_cast<int>(rows.size())] = -out_.rates[t];
+        rows.push_back(t);
+        along.push_back(Vector::Unit(size, t));
+      }
+    }
+    const int m = static_cast<int>(rows.size());
+    Matrix B(m, m);
+    for (int c = 0; c < m; ++c) {
+      const Vector answer = A_ * along[at(c)];
+      for (int r = 0; r < m; ++r) B(r, c) = answer[rows[at(r)]];
+    }
+    Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition;
+    decomposition.setThreshold(kRank);  // of contacts that depend on one another the least-norm impulses are taken
+    decomposition.compute(B);
+    const Vector unknown = decomposition.solve(target.head(m));
+    Vector p = Vector::Zero(size);
+    for (int c = 0; c < m; ++c) p += unknown[c] * along[at(c)];
+    return p;
+  }
+
+  void apply(int n, const Vector& impulse, double e) {
+    const Vector after = out_.rates + A_ * impulse;
+    // the work of an impulse over a velocity that changes linearly with it
+    const Vector works = 0.5 * impulse.cwiseProduct(out_.rates + after);
+    time_ += touching_[at(n)].contact_time;
+    out_.events.push_back({n, time_, out_.rates[n], after[n], impulse[n], works.sum()});
+    out_.rates = after;
+    out_.impulses += impulse;
+    out_.works += works;
+    if (e == 0) {
+      out_.is_held[at(n)] = 1;
+      out_.rates[n] = 0;
+    }
+    for (int i = 0; i < k_; ++i) {
+      if (out_.is_held[at(i)] && std::abs(out_.rates[i]) < kStandsStill) out_.rates[i] = 0;
+    }
+  }
+
+  /// One blow without rebound over all contacts: the active set grows by the contact that closes fastest and loses those that would pull.
+  /// (17) Source: C. L. Lawson, R. J. Hanson, Solving Least Squares Problems (1974), ch. 23.
+  void settle(int fastest) {
+    const Matrix A = A_.topLeftCorner(k_, k_);
+    Vector p = Vector::Zero(k_);
+    std::vector<int> active;
+    for (int round = 0; round < 10 * k_ + 10; ++round) {
+      const Vector rates = out_.rates.head(k_) + A * p;
+      int next = -1;
+      for (int i = 0; i < k_; ++i) {
+        if (std::count(active.begin(), active.end(), i) == 0 && rates[i] < -0.1 * kStandsStill && (next < 0 || rates[i] < rates[next]))
+          next = i;
+      }
+      if (next < 0) break;
+      active.push_back(next);
+      for (;;) {
+        const int m = static_cast<int>(active.size());
+        Matrix B(m, m);
+        Vector b(m);
+        for (int r = 0; r < m; ++r) {
+          b[r] = -out_.rates[active[at(r)]];
+          for (int c = 0; c < m; ++c) B(r, c) = A(active[at(r)], active[at(c)]);
+        }
+        Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition;
+        decomposition.setThreshold(kRank);
+        decomposition.compute(B);
+        const Vector s = decomposition.solve(b);
+        double share = 1;
+        int leaves = -1;
+        for (int r = 0; r < m; ++r) {
+          const double now = p[active[at(r)]];
+          if (s[r] <= 0 && now / (now - s[r]) < share) share = now / (now - s[r]), leaves = r;
+        }
+        for (int r = 0; r < m; ++r) p[active[at(r)]] += share * (s[r] - p[active[at(r)]]);
+        if (leaves < 0) break;
+        p[active[at(leaves)]] = 0;
+        active.erase(active.begin() + leaves);
+        if (active.empty()) break;
+      }
+    }
+    Vector impulse = Vector::Zero(A_.rows());
+    impulse.head(k_) = p;
+    const std::vector<char> were_held = out_.is_held;
+    apply(fastest, impulse, 0);
+    for (int i = 0; i < k_; ++i) {
+      out_.is_held[at(i)] = p[i] > 0 || (were_held[at(i)] && std::abs(out_.rates[i]) <= kStandsStill);
+      if (out_.is_held[at(i)]) out_.rates[i] = 0;
+    }
+  }
+
+  const Matrix& A_;
+  const std::vector<Touching>& touching_;
+  int k_, tangents_;
+  FastPhase out_;
+  double time_ = 0;
+};
+
+}  // namespace
+
+FastPhase resolve(ImpactLaw law, const Matrix& A, const Vector& w, const std::vector<Touching>& touching, int tangents) {
+  Resolution resolution(A, w, touching, tangents);
+  switch (law) {
+    case ImpactLaw::compliant:
+      return resolution.compliant(1);
+    case ImpactLaw::hertz:
+      return resolution.compliant(1.5);
+    case ImpactLaw::coupled:
+      return resolution.sequential(true);
+    case ImpactLaw::sequential:
+      break;
+  }
+  return resolution.sequential(false);
+}
+
+std::vector<FastPoint> collision_path(const Law& law, double closing_speed, int points) {
+  // h'' + alpha1 h' + alpha0 h = 0 from h = 0, h' = -v:  two exponentials, complex below zeta = 1  (11)
+  const double w = std::sqrt(law.alpha0), zeta = law.alpha1 / (2 * w), end = contact_time_of(law);
+  std::vector<FastPoint> path;
+  for (int k = 0; k <= points; ++k) {
+    const double t = end * k / points, decay = std::exp(-zeta * w * t), d = std::abs(zeta * zeta - 1);
+    double s = t, c = 1;  // of the critical law
+    if (d > 1e-12) {
+      const double wd = w * std::sqrt(d);
+      s = zeta < 1 ? std::sin(wd * t) / wd : std::sinh(wd * t) / wd;
+      c = zeta < 1 ? std::cos(wd * t) : std::cosh(wd * t);
+    }
+    const double gap = -closing_speed * decay * s, rate = -closing_speed * decay * (c - zeta * w * s);
+    path.push_back({t, gap, rate, -law.alpha1 * rate - law.alpha0 * gap});
+  }
+  return path;
+}
+
+}  // namespace tenon::contact

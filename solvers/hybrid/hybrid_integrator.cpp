@@ -1,0 +1,249 @@
+#include "tenon/solvers/hybrid/hybrid_integrator.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tenon/solvers/hybrid/exact_flow.hpp"
+
+namespace tenon {
+
+namespace {
+
+constexpr int kSamples = 3;  // a step's end, and two points inside it
+constexpr int kMaxBisections = 200;
+constexpr int kMaxLandings = 4;
+constexpr double kSameTime = 4e-16;  // relative: two instants nobody can tell apart
+
+bool is_same_time(double a, double b) {
+  return std::abs(a - b) <= kSameTime * std::max(std::abs(a), std::abs(b));
+}
+
+}  // namespace
+
+HybridIntegrator::HybridIntegrator(const Dae& dae, const IntegratorOptions& options, std::unique_ptr<Flow> flow)
+    : dae_(dae),
+      options_(options),
+      flow_(std::move(flow)),
+      exact_(make_exact_flow(dae)),
+      current_(flow_.get()),
+      newton_(dae),
+      workspace_(dae.make_workspace()),
+      sample_(initial_state_of(dae)) {
+  validate(options);
+  before_.resize(dae.num_guards());
+  after_.resize(dae.num_guards());
+  values_.resize(dae.num_guards());
+  is_armed_.resize(static_cast<std::size_t>(dae.num_guards()));
+}
+
+IntegrationResult HybridIntegrator::advance(DaeState& state, double t_end) {
+  result_ = {};
+  const auto steps_taken = [&] { return flow_->steps() + exact_->steps(); };
+  const long steps = steps_taken(), rejected = flow_->rejected(), evaluations = flow_->evaluations();
+  const auto finish = [&] {
+    left_ = state;
+    result_.steps = steps_taken() - steps;
+    result_.rejected = flow_->rejected() - rejected;
+    result_.evaluations = flow_->evaluations() - evaluations;
+    return result_;
+  };
+  if (!is_started_) t_start_ = state.t;
+  if (!is_where_we_left(state) && !restart(state, {})) return finish();
+  if (!is_started_ && options_.output_step > 0) {
+    outputs_ = 1;
+    if (!emit(state)) return finish();
+  }
+  is_started_ = true;
+
+  while (state.t < t_end && !is_same_time(state.t, t_end)) {
+    const double t_clock = dae_.next_event_time(state);
+    const double t_limit = std::min(t_end, t_clock);
+    if (t_limit > state.t && !is_same_time(t_limit, state.t)) {
+      if (steps_taken() - steps >= options_.max_steps) {
+        fail(IntegrationStatus::step_limit, state, std::to_string(options_.max_steps) + " steps are used up");
+        return finish();
+      }
+      switch (current_->step(t_limit, std::min(options_.max_step, dae_.max_step(state, workspace_)))) {
+        case Flow::Step::taken:
+          break;
+        case Flow::Step::collapsed:
+          fail(IntegrationStatus::step_collapse, state, "the step collapses");
+          return finish();
+        case Flow::Step::failed:
+          fail(IntegrationStatus::no_consistent_state, state,
+               "no consistent multipliers; the system is " + newton_.diagnose(state, workspace_).text());
+          return finish();
+      }
+      Crossing crossing;
+      if (find_crossing(crossing)) {
+        if (!land(crossing, state)) return finish();
+        if (!write_outputs(state.t) || !emit(state) || !restart(state, crossing.fired) || !emit(state)) return finish();
+        continue;
+      }
+      if (!current_->interpolate(current_->end(), state)) {
+        fail(IntegrationStatus::no_consistent_state, state, "no consistent multipliers");
+        return finish();
+      }
+      if (!write_outputs(state.t)) return finish();
+    }
+    if (t_clock <= t_end && is_same_time(state.t, t_clock)) {
+      state.t = t_clock;
+      if (!emit(state) || !restart(state, {}) || !emit(state)) return finish();
+    }
+  }
+  state.t = t_end;
+  return finish();
+}
+
+bool HybridIntegrator::is_where_we_left(const DaeState& state) const {
+  return is_started_ && state.t == left_.t && state.mode == left_.mode && state.x == left_.x && state.u == left_.u;
+}
+
+/// Consistent, and no level asks for another mode.
+bool HybridIntegrator::settle(DaeState& state, std::span<const int> fired) {
+  for (int k = 0; k < options_.max_events_at_once; ++k) {
+    if (!make_consistent(dae_, newton_, state, workspace_)) {
+      return fail(IntegrationStatus::no_consistent_state, state,
+                  "no consistent multipliers; the system is " + newton_.diagnose(state, workspace_).text());
+    }
+    const Transition transition = dae_.transition(
+        state, fired, workspace_, options_.on_event ? options_.on_event : [](const DaeEvent&) {});
+    if (!transition.failure.empty()) return fail(IntegrationStatus::transition_failed, state, transition.failure);
+    if (!transition.changed) return true;
+    fired = {};
+    ++result_.events;
+  }
+  return fail(IntegrationStatus::too_many_events, state, std::to_string(options_.max_events_at_once) + " events at one instant");
+}
+
+bool HybridIntegrator::restart(DaeState& state, std::span<const int> fired) {
+  if (!settle(state, fired)) return false;
+  sample_.mode = state.mode;
+  sample_.u = state.u;
+  current_ = dae_.has_exact_flow(state.mode) ? exact_.get() : flow_.get();
+  reads_derivatives_ = dae_.guards_read_derivatives(state.mode);
+  if (!current_->restart(state)) return fail(IntegrationStatus::step_collapse, state, "the integrator cannot start");
+  evaluate_guards(state, before_);
+  for (std::size_t i = 0; i < is_armed_.size(); ++i) is_armed_[i] = before_[static_cast<int>(i)] > 0;
+  return true;
+}
+
+void HybridIntegrator::evaluate_guards(const DaeState& state, Vector& values) {
+  if (values.size() > 0) dae_.guards(state.mode, DaePoint(state), workspace_, values);
+}
+
+/// What the guards need of the state at t.
+bool HybridIntegrator::look(double t) {
+  return reads_derivatives_ ? current_->interpolate(t, sample_) : current_->interpolate_state(t, sample_);
+}
+
+double HybridIntegrator::guard_at(double t, int guard) {
+  look(t);
+  evaluate_guards(sample_, values_);
+  return values_[guard];
+}
+
+/// The first guard that falls within the last step, if any does.
+bool HybridIntegrator::find_crossing(Crossing& crossing) {
+  if (before_.size() == 0) return false;
+  const double a = current_->begin(), b = current_->end();
+  double left = a;
+  for (int k = 1; k <= kSamples; ++k) {
+    const double right = k == kSamples ? b : a + (b - a) * k / kSamples;
+    if (!look(right)) return false;
+    evaluate_guards(sample_, after_);
+    int first = -1;
+    for (int i = 0; i < after_.size(); ++i) {
+      if (!is_armed_[static_cast<std::size_t>(i)] || after_[i] > 0) continue;
+      const double t = locate(i, left, right);
+      if (first < 0 || t < crossing.t) first = i, crossing.t = t;
+    }
+    if (first >= 0) {
+      crossing.fired.push_back(first);
+      for (int i = 0; i < after_.size(); ++i) {
+        const bool fell = i != first && is_armed_[static_cast<std::size_t>(i)] && after_[i] <= 0;
+        if (fell && guard_at(crossing.t, i) <= 0) crossing.fired.push_back(i);
+      }
+      return true;
+    }
+    for (int i = 0; i < after_.size(); ++i) is_armed_[static_cast<std::size_t>(i)] |= after_[i] > 0;
+    std::swap(before_, after_);
+    left = right;
+  }
+  return false;
+}
+
+/// The upper end of an interval of width event_tolerance in which the guard falls: regula falsi with the Illinois weights, bisection where
+/// that is slow.
+double HybridIntegrator::locate(int guard, double a, double b) {
+  double ga = guard_at(a, guard), gb = guard_at(b, guard);
+  if (!(ga > 0)) ga = before_[guard] > 0 ? before_[guard] : std::abs(gb);
+  int side = 0;
+  for (int k = 0; k < kMaxBisections && b - a > options_.event_tolerance && !is_same_time(a, b); ++k) {
+    double t = k % 4 == 3 ? 0.5 * (a + b) : (a * gb - b * ga) / (gb - ga);
+    if (!(t > a && t < b)) t = 0.5 * (a + b);
+    const double inside = 0.5 * options_.event_tolerance;  // a root beside an end closes the interval from the other side
+    t = std::clamp(t, std::min(a + inside, 0.5 * (a + b)), std::max(b - inside, 0.5 * (a + b)));
+    const double g = guard_at(t, guard);
+    if (g <= 0) {
+      b = t, gb = g;
+      if (side == -1) ga *= 0.5;
+      side = -1;
+    } else {
+      a = t, ga = g;
+      if (side == 1) gb *= 0.5;
+      side = 1;
+    }
+  }
+  return b;
+}
+
+/// The state at the crossing, as accurate as a step: the instant itself is corrected where the interpolant was off.
+bool HybridIntegrator::land(Crossing& crossing, DaeState& state) {
+  const int guard = crossing.fired.front();
+  const double delta = 1e-3 * (current_->end() - current_->begin());
+  const double t0 = std::max(current_->begin(), crossing.t - delta), t1 = std::min(current_->end(), t0 + 2 * delta);
+  const double slope = (guard_at(t1, guard) - guard_at(t0, guard)) / (t1 - t0);
+  for (int k = 0; k < kMaxLandings; ++k) {
+    if (!current_->land(crossing.t, state)) return fail(IntegrationStatus::no_consistent_state, state, "no consistent multipliers");
+    evaluate_guards(state, values_);
+    const double correction = -values_[guard] / slope;
+    if (!(std::abs(correction) > options_.event_tolerance) || !(std::abs(correction) < delta)) break;
+    crossing.t = std::clamp(crossing.t + correction, current_->begin(), current_->end());
+  }
+  // a guard that jumps has no zero to land on: the next mode starts where it has fallen, or this event would come back for ever
+  for (double ahead = options_.event_tolerance; values_[guard] > 0 && crossing.t < current_->end(); ahead *= 2) {
+    crossing.t = std::min(crossing.t + ahead, current_->end());
+    if (!current_->land(crossing.t, state)) return fail(IntegrationStatus::no_consistent_state, state, "no consistent multipliers");
+    evaluate_guards(state, values_);
+  }
+  return true;
+}
+
+bool HybridIntegrator::write_outputs(double t_last) {
+  if (!(options_.output_step > 0)) return true;
+  for (;; ++outputs_) {
+    const double t = t_start_ + static_cast<double>(outputs_) * options_.output_step;
+    if (t > t_last && !is_same_time(t, t_last)) return true;
+    if (!current_->interpolate(std::min(t, t_last), sample_)) return true;
+    sample_.t = t;
+    if (!emit(sample_)) {
+      ++outputs_;
+      return false;
+    }
+  }
+}
+
+bool HybridIntegrator::emit(const DaeState& state) {
+  if (!options_.on_output || options_.on_output(state)) return true;
+  result_.status = IntegrationStatus::stopped;
+  return false;
+}
+
+bool HybridIntegrator::fail(IntegrationStatus status, const DaeState& state, const std::string& why) {
+  result_.status = status;
+  result_.explanation = "t = " + std::to_string(state.t) + " s: " + why;
+  return false;
+}
+
+}  // namespace tenon

@@ -1,0 +1,59 @@
+// Integration across events, over any flow.
+//
+// settle: xdot and y from F = 0, then the level test (Dae::transition until nothing changes any more); step; look for guards that fell at
+// the step's end and at points inside it; locate the first of them; settle again.
+//
+// Root finding is here and not in the flow's library: a guard that starts at zero must sleep until it has been positive, which a test for a
+// change of sign does not know, and both flows must see the same events.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "tenon/solvers/hybrid/flow.hpp"
+
+namespace tenon {
+
+class HybridIntegrator final : public Integrator {
+ public:
+  HybridIntegrator(const Dae& dae, const IntegratorOptions& options, std::unique_ptr<Flow> flow);
+
+  IntegrationResult advance(DaeState& state, double t_end) override;
+
+ private:
+  struct Crossing {
+    double t = 0;
+    std::vector<int> fired;
+  };
+
+  bool is_where_we_left(const DaeState& state) const;
+  bool settle(DaeState& state, std::span<const int> fired);
+  bool restart(DaeState& state, std::span<const int> fired);
+  bool find_crossing(Crossing& crossing);
+  double locate(int guard, double a, double b);
+  bool land(Crossing& crossing, DaeState& state);
+  bool write_outputs(double t_last);
+  bool emit(const DaeState& state);
+  bool look(double t);
+  double guard_at(double t, int guard);
+  void evaluate_guards(const DaeState& state, Vector& values);
+  bool fail(IntegrationStatus status, const DaeState& state, const std::string& why);
+
+  const Dae& dae_;
+  IntegratorOptions options_;
+  std::unique_ptr<Flow> flow_, exact_;  // exact_: for the modes that have one
+  Flow* current_;
+  ConsistentStart newton_;
+  Dae::Workspace workspace_;
+  IntegrationResult result_;
+
+  DaeState left_;    // where the last call ended
+  DaeState sample_;  // inside a step
+  Vector before_, after_, values_;
+  std::vector<char> is_armed_;
+  bool is_started_ = false, reads_derivatives_ = true;
+  double t_start_ = 0;
+  long outputs_ = 0;  // written so far
+};
+
+}  // namespace tenon
