@@ -29,7 +29,7 @@ const std::vector<Verb>& verbs() {
        "SCENE",
        1,
        1,
-       {"output", "events", "fast-phase", "solver", "set", "tolerance", "json", "quiet", "real-time"},
+       {"output", "events", "report", "fast-phase", "solver", "set", "tolerance", "json", "quiet", "real-time"},
        &run_simulate},
       {"solve",
        "one nonlinear program",
