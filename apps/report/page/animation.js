@@ -14,6 +14,7 @@ const kFitSamples = 40;          // instants that a view is fitted to
 const kLongestArrow = 0.55;      // of the scene's size
 const kUnits = {force: "N", torque: "N m", velocity: "m/s"};
 const kBodyColors = 6;
+const kMostColored = 12;         // bodies; a crowd has one colour
 
 /// The colours of the scene's materials, set anew whenever the theme changes.
 class Paints {
@@ -75,8 +76,9 @@ export class Animation {
     const {scenery, table, paints, planar} = this;
     this.bodies = new Map();
     this.arrows = new Map();
-    (scenery.bodies ?? []).forEach((json, i) => {
-      const body = new Body(json, table, planar, extent, i, paints);
+    const list = scenery.bodies ?? [];
+    list.forEach((json, i) => {
+      const body = new Body(json, table, planar, extent, list.length > kMostColored ? 0 : i, paints);
       this.bodies.set(json.name, body);
       (this.bodies.get(json.parent)?.group ?? this.scene).add(body.group);
     });

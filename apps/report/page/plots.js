@@ -8,6 +8,7 @@ import {lastRowAt} from "./table.js";
 import {color, kSeriesColors, onThemeChange, seriesColor} from "./theme.js";
 
 const kHeight = 158;
+const kRounding = 1e-10;  // values that differ by less are drawn as one
 const kLegendMost = 12;  // beyond, a legend says less than the picture
 
 /// Of the quantities that are no part of the scene, positive values over more than four decades are read on a logarithmic axis.
@@ -128,7 +129,7 @@ export class Plots {
   /// Makes a plot with what all have in common: cursor, zoom, and a click that sets the clock.
   add(group, frame, options, values) {
     const plot = new uPlot({
-      ...options, width: Math.max(200, frame.clientWidth), pxAlign: false, padding: [8, 10, 0, 0],
+      ...options, width: Math.max(200, frame.clientWidth), pxAlign: false, padding: [8, 16, 0, 0],
       cursor: {
         sync: {key: this.sync.key, setSeries: false}, drag: {x: true, y: false, setScale: true, dist: 6}, points: {size: 5},
         bind: {click: (u, _, handler) => (event) => {
@@ -159,7 +160,8 @@ export class Plots {
     return {range: (_, low, high) => {
       if (low === null) return [0, 1];
       const least = Math.min(low, ...held), most = Math.max(high, ...held);
-      const room = most > least ? 0.06 * (most - least) : Math.abs(most) * 0.1 || 1;
+      const isFlat = most - least <= kRounding * Math.max(Math.abs(most), Math.abs(least));
+      const room = isFlat ? Math.abs(most) * 0.1 || 1 : 0.06 * (most - least);
       return [least - room, most + room];
     }};
   }
