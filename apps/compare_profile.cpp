@@ -11,6 +11,7 @@
 
 #include "tenon/apps/compare.hpp"
 #include "tenon/apps/interrupt.hpp"
+#include "tenon/apps/make_report.hpp"
 #include "tenon/apps/named_problem.hpp"
 #include "tenon/apps/profile_picture.hpp"
 #include "tenon/apps/progress.hpp"
@@ -75,6 +76,7 @@ void write_picture(const std::string& path, const std::string& title, const std:
 
 int compare_profile(const Arguments& arguments) {
   if (!arguments.names.empty()) throw std::invalid_argument("compare: --profile stands alone (expected no further problem)");
+  check_report(arguments);
   Options options = arguments.options();
   if (!arguments.time_limit) options.time_limit = kUsualTimeLimit;
   const std::vector<SolverDescription> solvers = chosen_solvers(arguments);
@@ -117,6 +119,7 @@ int compare_profile(const Arguments& arguments) {
   table.finish();
   write_picture(stem + ".svg", fmt::format("{} problems, tolerance {}", problems.size(), options.tolerance),
                 {{"problems solved, by time", by_time}, {"problems solved, by iterations", by_iterations}});
+  make_report(arguments, {stem + ".csv"});
 
   Table summary({"solver", "solved", "fastest", "fewest iterations"});
   for (std::size_t s = 0; s < names.size(); ++s) {

@@ -10,6 +10,7 @@
 
 #include "tenon/apps/interrupt.hpp"
 #include "tenon/apps/json.hpp"
+#include "tenon/apps/make_report.hpp"
 #include "tenon/apps/progress.hpp"
 #include "tenon/apps/simulation.hpp"
 #include "tenon/apps/table.hpp"
@@ -151,7 +152,12 @@ class SimulationRecord {
 
 }  // namespace
 
-int run_simulate(const Arguments& arguments) {
+int run_simulate(const Arguments& given) {
+  Arguments arguments = given;
+  check_report(arguments);
+  if (arguments.output.empty()) arguments.output = record_beside_report(arguments, ".csv", "");
+  if (arguments.events.empty()) arguments.events = record_beside_report(arguments, ".events.csv", "");
+  if (arguments.fast_phase.empty()) arguments.fast_phase = record_beside_report(arguments, ".fast.csv", "");
   const Simulation simulation = open_simulation(arguments.names.front(), arguments.set);
   const std::string name = arguments.solver.value_or(simulation.settings.integrator);
   IntegratorOptions options;
@@ -171,10 +177,13 @@ int run_simulate(const Arguments& arguments) {
     if (!record->partial().empty()) fmt::print(stderr, "tenon: interrupted, {} rows are in {}\n", record->rows(), record->partial());
     return kInterrupted;
   }
-  if (is_done)
+  if (is_done) {
     record->finish();
-  else
+    write_scenery(simulation.scenery, arguments.output);
+    make_report(arguments, {arguments.output, arguments.events, arguments.fast_phase});
+  } else {
     fmt::print(stderr, "tenon: {}: {}\n", simulation.dae->name(), result.explanation);
+  }
   if (arguments.json)
     print(record->json(result, state, name));
   else if (!arguments.quiet)

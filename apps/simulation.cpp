@@ -20,6 +20,7 @@ Simulation open_contact(const std::string& name_or_path, const std::vector<std::
   contact::SceneFile file = contact::load_scene(name_or_path, overrides);
   Simulation out;
   out.settings = file.simulation;
+  out.scenery = std::move(file.scenery);
   std::visit(
       [&](auto& scene) {
         for (const auto& c : scene.constraints) {

@@ -15,6 +15,7 @@ struct Simulation {
   std::unique_ptr<Dae> dae;
   contact::SimulationSettings settings;
   std::map<std::string, contact::Law> collisions;  // the law of each two-scale contact's fast phase, by the contact's name
+  Scenery scenery;  // its picture, for the record
 };
 
 /// A delta robot's scene or one of bodies in contact. Throws as their load_scene do, and where the wrist starts at a singularity.

@@ -8,9 +8,9 @@ int run_check(const Arguments&);
 int run_compare(const Arguments&);
 int run_fit(const Arguments&);
 int run_list(const Arguments&);
+int run_report(const Arguments&);
 int run_robot(const Arguments&);
 int run_simulate(const Arguments&);
-int run_report(const Arguments&);
 int run_solve(const Arguments&);
 
 const std::vector<Verb>& verbs() {
@@ -37,7 +37,7 @@ const std::vector<Verb>& verbs() {
        "SCENE",
        1,
        1,
-       {"output", "events", "fast-phase", "solver", "set", "tolerance", "json", "quiet", "real-time"},
+       {"output", "events", "report", "fast-phase", "solver", "set", "tolerance", "json", "quiet", "real-time"},
        &run_simulate},
       {"solve",
        "one nonlinear program",

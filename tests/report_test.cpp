@@ -12,6 +12,7 @@
 #include "tenon/core/scenery.hpp"
 #include "tenon/problems/allocation/vehicle_file.hpp"
 #include "tenon/problems/allocation/vehicle_scenery.hpp"
+#include "tenon/problems/contact/scene_file.hpp"
 #include "tenon/tests/expect_message.hpp"
 #include "tenon/tests/run_tenon.hpp"
 #include "tenon/tests/sample_records.hpp"
@@ -186,6 +187,15 @@ TEST_F(Report, TheVerbsWriteRecordAndPageAndThePageCanBeMadeAgain) {
   EXPECT_EQ(run_tenon(folder_, "solve hs071 --report solve.html").code, 0);
   EXPECT_EQ(run_tenon(folder_, "report compare.csv solve.jsonl run.csv --report all.html").code, 0);
   EXPECT_TRUE(folder_.has("all.html"));
+}
+
+TEST_F(Report, EveryBuiltInSceneDrawsItself) {
+  for (const std::string& scene : contact::builtin_scenes()) {
+    if (scene == "chain-fountain") continue;  // takes minutes
+    const Ended ended = run_tenon(folder_, "simulate " + scene + " --set simulation.duration=0.2 --report run.html");
+    EXPECT_EQ(ended.code, 0) << scene << "\n" << ended.err;
+    EXPECT_NE(folder_.read("run.html").find("\"title\":\"" + scene + "\""), std::string::npos) << scene;
+  }
 }
 
 TEST_F(Report, ABadPathOrRecordLeavesNoPage) {

@@ -31,7 +31,7 @@ classic=(hs001 hs006 hs012 hs021 hs028 hs035 hs039 hs040 hs043 hs044 hs065 hs071
 
 picture hover 1280x800 't=12&theme=light' allocate momav --wrenches $sweep
 picture rotor_failure 1280x800 't=21&theme=dark' allocate momav --wrenches $sweep --set rotor.3.fails_at=20
-picture tilt_quad 1280x800 't=3&theme=light' allocate tilt-quad --wrenches $sweep
+picture cradle 1280x800 't=2.3&theme=light' simulate cradle
+picture car 1280x800 't=1.03&theme=dark' simulate car
 picture compare 1280x800 'theme=light' compare "${classic[@]}"
-picture compare_rows 1280x800 'theme=dark' compare momav --rows 100 --seed 1 --solvers newton-kkt,newton-kkt-sparse,ipopt,nlopt-slsqp
 picture convergence 1280x800 'theme=light' solve hs106

@@ -10,6 +10,7 @@
 #include "tenon/core/nearest_name.hpp"
 #include "tenon/core/read_file.hpp"
 #include "tenon/problems/contact/scene_reader.hpp"
+#include "tenon/problems/contact/scene_scenery.hpp"
 
 namespace tenon {
 
@@ -71,14 +72,16 @@ SceneFile parse_scene(const std::string& text, const std::string& file, const st
     s.atol = positive(values, *simulation, "atol", 1e-2 * s.rtol);
     s.integrator = simulation->text("integrator", s.integrator);
   }
-  const auto named = [&](auto scene) {
+  const auto read = [&](auto reader) {
+    auto scene = reader.read();
     scene.name = root.text("name", std::filesystem::path(file).stem().string());
-    return scene;
+    out.scenery = scenery_of(scene, reader.shapes(), out.simulation.duration);
+    out.scene = std::move(scene);
   };
   if (space == "planar")
-    out.scene = named(SceneReader<2>(root, values).read());
+    read(SceneReader<2>(root, values));
   else
-    out.scene = named(SceneReader<3>(root, values).read());
+    read(SceneReader<3>(root, values));
   return out;
 }
 

@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "tenon/core/input_error.hpp"
+#include "tenon/core/scenery.hpp"
 #include "tenon/problems/contact/scene.hpp"
 
 namespace tenon::contact {
@@ -39,6 +40,7 @@ struct SimulationSettings {
 struct SceneFile {
   std::variant<Scene<2>, Scene<3>> scene;
   SimulationSettings simulation;
+  Scenery scenery;  // its picture
 };
 
 /// The names of the scenes that come with tenon, sorted.

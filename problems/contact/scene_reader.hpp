@@ -18,6 +18,8 @@ class SceneReader {
 
   /// Throws InputError, with the place of what is wrong.
   Scene<D> read();
+  /// What the bodies are made of, after read().
+  const std::vector<Shape<D>>& shapes() const { return shapes_; }
 
  private:
   using Table = toml_file::Table;

@@ -19,10 +19,3 @@ export function bind(value, table) {
 export function bindVector(values, table) {
   return [0, 1, 2].map((i) => bind(values?.[i] ?? 0, table));
 }
-
-/// The names of all columns that a piece of scenery is bound to.
-export function boundColumns(value, found = new Set()) {
-  if (typeof value === "string") found.add(value);
-  else if (value?.column) found.add(value.column);
-  return found;
-}

@@ -7,19 +7,20 @@ import {axis, logAxis} from "./plots.js";
 import {Table} from "./table.js";
 import {onThemeChange, seriesColor} from "./theme.js";
 
+const kHeight = 230;
 const kMeasures = [["primal", 0], ["dual", 1], ["complementarity", 2], ["mu", 3]];
 const kColumns = [["index", "iteration"], ["objective", "objective"], ["primal", "primal"], ["dual", "dual"], ["complementarity", "complementarity"],
                   ["mu", "μ"], ["alpha_primal", "α primal"], ["alpha_dual", "α dual"], ["regularization", "regularization"], ["trials", "trials"]];
 
-function chart(frame, height, series, data, logarithmic) {
+function chart(frame, series, data, logarithmic) {
   const plot = new uPlot({
-    width: Math.max(200, frame.clientWidth), height, pxAlign: false, legend: {markers: {width: 0, fill: (u, i) => `var(--series-${u.series[i].color})`}}, cursor: {sync: {key: "iterations"}, drag: {x: true, y: false}},
+    width: Math.max(200, frame.clientWidth), height: kHeight, pxAlign: false, legend: {markers: {width: 0, fill: (u, i) => `var(--series-${u.series[i].color})`}}, cursor: {sync: {key: "iterations"}, drag: {x: true, y: false}},
     scales: {x: {time: false}, y: logarithmic ? {distr: 3} : {}},
     axes: [axis({size: 26}), logarithmic ? logAxis({size: 62}) : axis({size: 62, values: (_, splits) => splits.map((v) => number(v, 6))})],
     series: [{label: "iteration", value: (_, v) => number(v)}, ...series],
     hooks: {ready: [(u) => u.setLegend({idx: data[0].length - 1}, false)]},
   }, data, frame);
-  new ResizeObserver(() => frame.clientWidth > 0 && plot.setSize({width: frame.clientWidth, height})).observe(frame);
+  new ResizeObserver(() => frame.clientWidth > 0 && plot.setSize({width: frame.clientWidth, height: kHeight})).observe(frame);
   onThemeChange(() => plot.redraw(false));
   return plot;
 }
@@ -51,7 +52,8 @@ export class Convergence {
     const column = (name) => chosen.map((k) => table.numbers(name)[k]);
     const positive = (name) => column(name).map((v) => (v > 0 ? v : null));
     const measures = kMeasures.filter(([name]) => positive(name).some((v) => v !== null));
-    const residuals = element("div", {class: "frame"}), objective = element("div", {class: "frame"});
+    const frame = () => element("div", {class: "frame", style: `min-height: ${kHeight}px`});
+    const residuals = frame(), objective = frame();
     this.plots = [];
     this.place.replaceChildren(
         element("div", {class: "two"},
@@ -59,8 +61,8 @@ export class Convergence {
                 element("figure", {class: "plot", "aria-label": "Objective over the iterations"}, element("figcaption", {}, "Objective"), objective)),
         dataTable(kColumns, chosen.map((k) => Object.fromEntries(kColumns.map(([name]) => [name, table.numbers(name)[k]]))), {label: "Iterations"}));
     whenSeen(residuals, () => {
-      this.plots.push({plot: chart(residuals, 230, measures.map(([name, k]) => line(name, k)), [column("index"), ...measures.map(([name]) => positive(name))], true)});
-      this.plots.push({plot: chart(objective, 230, [line("objective", 4)], [column("index"), column("objective")], false)});
+      this.plots.push({plot: chart(residuals, measures.map(([name, k]) => line(name, k)), [column("index"), ...measures.map(([name]) => positive(name))], true)});
+      this.plots.push({plot: chart(objective, [line("objective", 4)], [column("index"), column("objective")], false)});
     });
   }
 }

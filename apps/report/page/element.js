@@ -19,9 +19,10 @@ export function download(name, text, type = "text/csv") {
 
 /// Calls `make` once `node` is about to be seen, so that a long page opens at once; printing shows everything.
 const waiting = new Map();
+const kMargin = 300;  // pixels beyond the window
 const observer = new IntersectionObserver((entries) => {
   for (const entry of entries) if (entry.isIntersecting) show(entry.target);
-}, {rootMargin: "300px"});
+}, {rootMargin: `${kMargin}px`});
 
 function show(node) {
   const make = waiting.get(node);
@@ -33,6 +34,14 @@ function show(node) {
 export function whenSeen(node, make) {
   waiting.set(node, make);
   observer.observe(node);
+}
+
+/// What the window holds right now, so that the page's first picture is whole.
+export function showNear() {
+  for (const node of [...waiting.keys()]) {
+    const {top, bottom} = node.getBoundingClientRect();
+    if (bottom > -kMargin && top < window.innerHeight + kMargin) show(node);
+  }
 }
 
 export function showAll() {

@@ -3,7 +3,7 @@ import "uplot/dist/uPlot.min.css";
 import "./page.css";
 import {Comparison, Profile} from "./comparison.js";
 import {Convergence} from "./convergence.js";
-import {element, showAll} from "./element.js";
+import {element, showAll, showNear} from "./element.js";
 import {Record} from "./record.js";
 import {SphereMap} from "./sphere_map.js";
 import {Sweep} from "./sweep.js";
@@ -63,6 +63,7 @@ function start() {
   document.getElementById("help").addEventListener("click", () => help.showModal());
   listenToKeys(parts, help);
   goToHash(parts);
+  showNear();
   window.addEventListener("hashchange", () => goToHash(parts));
   window.report = {parts, showAll};  // for the console, and for tests
   document.documentElement.dataset.ready = "true";
