@@ -201,6 +201,34 @@ struct CurvedEqualities : FixedSize<S, 3, 2> {
   }
 };
 
+/// min x0  s.t.  x0^2 - x1 = 1,  x0 - x2 = 1/2,  x1, x2 >= 0, from (-2, 3, 1): Newton's steps with a fraction to the boundary are cut to
+/// nothing before the rows are met, whatever the line search says.  [A. Waechter, L. T. Biegler, Failure of global convergence for a class
+/// of interior point methods for nonlinear programming, Mathematical Programming 88 (2000)]
+template <class S = double>
+struct DeadEnd : FixedSize<S, 3, 2> {
+  using B = FixedSize<S, 3, 2>;
+
+  void bounds(typename B::Bounds& bounds) const {
+    bounds.x_lower.template tail<2>().setZero();
+    bounds.c_lower << 1, S(0.5);
+    bounds.c_upper = bounds.c_lower;
+  }
+  void initial_point(typename B::VectorN& x) const { x << -2, 3, 1; }
+  S objective(const typename B::VectorN& x, typename B::Workspace&) const { return x[0]; }
+  void gradient(const typename B::VectorN&, typename B::Workspace&, typename B::VectorN& g) const { g << 1, 0, 0; }
+  void constraints(const typename B::VectorN& x, typename B::Workspace&, typename B::VectorM& c) const {
+    c << x[0] * x[0] - x[1], x[0] - x[2];
+  }
+  void jacobian(const typename B::VectorN& x, typename B::Workspace&, typename B::Jacobian& j) const {
+    j << 2 * x[0], -1, 0,  //
+        1, 0, -1;
+  }
+  void hessian(const typename B::VectorN&, S, const typename B::VectorM& l, typename B::Workspace&, typename B::Hessian& h) const {
+    h.setZero();
+    h(0, 0) = 2 * l[0];
+  }
+};
+
 /// min pull x  s.t.  x - e0 >= 1,  x - e1 <= -1: no x meets both. Hard rows (D = 0) are infeasible; compliant ones settle where
 /// the springs and the pull balance: at x = (D1 - D0 - pull D0 D1) / (D0 + D1) while both are strained, -1 < x < 1, and below
 /// that, where the second row is met, at x = 1 - pull D0.
