@@ -257,11 +257,15 @@ TEST_F(NlSolves, TheHockSchittkowskiFilesReachTheirReference) {
     const NlFile file = read_nl((folder / (names[k] + ".nl")).string());
     Point point = file.start;
     const Result result = make_solver("newton-kkt", *file.problem)->solve(point);
-    EXPECT_EQ(result.status, Status::solved) << names[k];
-    EXPECT_LE(result.residual.max_scaled(), 1e-8) << names[k];
     const double best = reference["objective"][k];
-    // hs013 has no KKT point: the nearer to its minimum, the worse the multipliers, and where a solver stops is a matter of taste.
-    if (result.objective > best + (names[k] == "hs013" ? 1e-2 : 1e-6) * std::max(1.0, std::abs(best))) ++worse;
+    if (names[k] == "hs013") {  // has no KKT point: the nearer to its minimum, the worse the multipliers; the reference is a little infeasible
+      EXPECT_NEAR(result.objective, 1, 1e-3);
+      EXPECT_LE(result.residual.primal, 1e-8);
+      continue;
+    }
+    EXPECT_EQ(result.status, Status::solved) << names[k];
+    EXPECT_LE(result.scaled_residual.value_or(result.residual).max_scaled(), 1e-8) << names[k];
+    if (result.objective > best + 1e-6 * std::max(1.0, std::abs(best))) ++worse;
   }
   EXPECT_LE(worse, 1);  // hs097 has several minima, and 4.0712 is not the lowest
 }
