@@ -6,6 +6,7 @@
 #include "tenon/problems/contact/contact_dae.hpp"
 #include "tenon/problems/delta/scene_dae.hpp"
 #include "tenon/problems/delta/scene_file.hpp"
+#include "tenon/problems/delta/scene_scenery.hpp"
 
 namespace tenon {
 
@@ -39,6 +40,7 @@ Simulation open_delta(const std::string& name_or_path, const std::vector<std::st
   out.settings.output_step = scene.output_step;
   out.settings.rtol = scene.rtol;
   out.settings.atol = 1e-2 * scene.rtol;
+  out.scenery = delta::scene_scenery(scene);
   out.dae = std::make_unique<delta::SceneDae>(std::move(scene));
   return out;
 }
