@@ -13,6 +13,7 @@
 #include "tenon/problems/allocation/vehicle_file.hpp"
 #include "tenon/problems/allocation/vehicle_scenery.hpp"
 #include "tenon/problems/contact/scene_file.hpp"
+#include "tenon/problems/delta/scene_file.hpp"
 #include "tenon/tests/expect_message.hpp"
 #include "tenon/tests/run_tenon.hpp"
 #include "tenon/tests/sample_records.hpp"
@@ -190,7 +191,10 @@ TEST_F(Report, TheVerbsWriteRecordAndPageAndThePageCanBeMadeAgain) {
 }
 
 TEST_F(Report, EveryBuiltInSceneDrawsItself) {
-  for (const std::string& scene : contact::builtin_scenes()) {
+  std::vector<std::string> scenes = contact::builtin_scenes();
+  const std::vector<std::string> with_robot = delta::builtin_scenes();
+  scenes.insert(scenes.end(), with_robot.begin(), with_robot.end());
+  for (const std::string& scene : scenes) {
     if (scene == "chain-fountain") continue;  // takes minutes
     const Ended ended = run_tenon(folder_, "simulate " + scene + " --set simulation.duration=0.2 --report run.html");
     EXPECT_EQ(ended.code, 0) << scene << "\n" << ended.err;
