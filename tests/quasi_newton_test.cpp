@@ -6,6 +6,7 @@
 #include "tenon/core/quasi_newton_nlp.hpp"
 #include "tenon/problems/catalogue.hpp"
 #include "tenon/solvers/make_solver.hpp"
+#include "tenon/tests/solved.hpp"
 
 namespace tenon {
 namespace {
@@ -18,18 +19,6 @@ class WithoutHessian final : public NlpDecorator {
   SparsePattern hessian_pattern() const override { return SparsePattern::from_entries(num_variables(), num_variables(), {}); }
   void hessian(ConstVectorRef, double, ConstVectorRef, Workspace&, std::span<double>) const override { FAIL() << "asked for a Hessian"; }
 };
-
-struct Solved {
-  Point point;
-  Result result;
-};
-
-Solved solve(const Nlp& problem, const std::string& solver = "newton-kkt", const Options& options = {}) {
-  Solved out{Point(problem.num_variables(), problem.num_constraints()), {}};
-  problem.initial_point(out.point.x);
-  out.result = make_solver(solver, problem, options)->solve(out.point);
-  return out;
-}
 
 TEST(QuasiNewton, TheApproximationMeetsTheSecantEquationAndIsPositiveDefinite) {
   const auto problem = find_problem("hs071").make();

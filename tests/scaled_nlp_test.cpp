@@ -11,6 +11,7 @@
 #include "tenon/core/check_derivatives.hpp"
 #include "tenon/problems/catalogue.hpp"
 #include "tenon/solvers/make_solver.hpp"
+#include "tenon/tests/solved.hpp"
 
 namespace tenon {
 namespace {
@@ -67,18 +68,6 @@ PolynomialNlp gap_in_metres() {
                         .start = vector({0, 0}),
                         .objective = 0.5e12 * square(x[0] - 3e-6) + square(x[1]),
                         .rows = {at_least_zero(1e6 * x[0] + x[1] - 5)}});
-}
-
-struct Solved {
-  Point point;
-  Result result;
-};
-
-Solved solve(const Nlp& problem, const Options& options = {}) {
-  Solved out{Point(problem.num_variables(), problem.num_constraints()), {}};
-  problem.initial_point(out.point.x);
-  out.result = make_solver("newton-kkt", problem, options)->solve(out.point);
-  return out;
 }
 
 /// The scaled problem with factors chosen at x.

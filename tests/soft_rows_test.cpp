@@ -10,6 +10,7 @@
 #include "tenon/core/with_soft_rows.hpp"
 #include "tenon/problems/catalogue.hpp"
 #include "tenon/solvers/make_solver.hpp"
+#include "tenon/tests/solved.hpp"
 
 namespace tenon {
 namespace {
@@ -28,18 +29,6 @@ std::vector<SoftRow> all_rows(const Nlp& problem, double linear, double quadrati
   std::vector<SoftRow> soft;
   for (int j = 0; j < problem.num_constraints(); ++j) soft.push_back({j, linear, quadratic});
   return soft;
-}
-
-struct Solved {
-  Point point;
-  Result result;
-};
-
-Solved solve(const Nlp& problem, const std::string& solver = "newton-kkt", const Options& options = {}) {
-  Solved out{Point(problem.num_variables(), problem.num_constraints()), {}};
-  problem.initial_point(out.point.x);
-  out.result = make_solver(solver, problem, options)->solve(out.point);
-  return out;
 }
 
 bool is_available(const std::string& name) {

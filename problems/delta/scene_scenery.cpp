@@ -2,28 +2,19 @@
 
 #include <cmath>
 
+#include "tenon/problems/delta/configuration.hpp"
+
 namespace tenon::delta {
 
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kThird = 2.0943951023931953;  // 120 deg
-
-/// In the axes of arm i: the angle at which it stands about z.
-double arm_angle(int i) {
-  return i == 0 ? 0 : i == 1 ? kThird : -kThird;
-}
-
-/// From the axes of arm i to the base's.
-Vector3d turned(int i, const Vector3d& v) {
-  return Eigen::AngleAxisd(arm_angle(i), Vector3d::UnitZ()) * v;
-}
-
 void add_arm(const Robot& robot, int i, Scenery& scenery) {
   const std::string number = std::to_string(i + 1), plane = "arm " + number, proximal = "proximal " + number;
   const double thick = 0.04 * robot.proximal_length, apart = 0.5 * robot.wrist_radius;
-  scenery.bodies.push_back({.name = plane, .angle = SceneryValue(arm_angle(i))});
+  const Vector3d lateral = to_world(i, Vector3d::UnitX());
+  scenery.bodies.push_back({.name = plane, .angle = SceneryValue(std::atan2(lateral[1], lateral[0]))});
   SceneryBody link{.name = proximal, .parent = plane, .position = {0, robot.base_radius, 0}, .angle = SceneryValue("q" + number + "1")};
   link.axis = Vector3d::UnitX();
   link.shapes = {SceneryShape::cylinder(Vector3d::Zero(), Vector3d(0, robot.proximal_length, 0), thick).colored("arm"),
@@ -32,7 +23,7 @@ void add_arm(const Robot& robot, int i, Scenery& scenery) {
   for (const double side : {-apart, apart}) {  // the distal link is two parallel rods, so that the wrist keeps its attitude
     scenery.links.push_back({.kind = SceneryLink::Kind::rod,
                              .from = {.body = proximal, .at = {side, robot.proximal_length, 0}},
-                             .to = {.body = "wrist", .at = scenery_vector(turned(i, Vector3d(side, robot.wrist_radius, 0)))}});
+                             .to = {.body = "wrist", .at = scenery_vector(to_world(i, Vector3d(side, robot.wrist_radius, 0)))}});
   }
 }
 
