@@ -1,0 +1,32 @@
+// A task for a receding horizon, as a scene makes it: the world, what looks ahead in it, what estimates, and what to compare with.
+//
+// The parts know nothing of one another: the program and the estimator are built from what is believed, before any world is drawn.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tenon/core/controller.hpp"
+#include "tenon/core/estimator.hpp"
+#include "tenon/core/horizon_program.hpp"
+#include "tenon/core/plant.hpp"
+
+namespace tenon {
+
+struct ControlTask {
+  struct Baseline {
+    std::string name;
+    std::unique_ptr<Controller> controller;  // takes the plant's measurements, gives its commands
+  };
+
+  std::string name;
+  double period = 0;    // s, of the controller
+  double duration = 0;  // s, after which a run ends whatever came of it
+  std::unique_ptr<Plant> plant;
+  std::unique_ptr<HorizonProgram> program;
+  std::unique_ptr<Estimator> estimator;  // null where the measurements say it all
+  std::vector<Baseline> baselines;
+};
+
+}  // namespace tenon
