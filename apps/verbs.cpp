@@ -1,3 +1,4 @@
+#include "tenon/apps/sweep/run_sweep.hpp"
 #include "tenon/apps/verb.hpp"
 
 namespace tenon {
@@ -12,6 +13,7 @@ int run_report(const Arguments&);
 int run_robot(const Arguments&);
 int run_simulate(const Arguments&);
 int run_solve(const Arguments&);
+int run_sweep(const Arguments&);
 
 const std::vector<Verb>& verbs() {
   static const std::vector<Verb> table{
@@ -39,6 +41,7 @@ const std::vector<Verb>& verbs() {
        1,
        {"output", "events", "report", "fast-phase", "solver", "set", "tolerance", "json", "quiet", "real-time"},
        &run_simulate},
+      sweep_verb(&run_sweep),
       {"solve",
        "one nonlinear program",
        "PROBLEM",
