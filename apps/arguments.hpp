@@ -14,7 +14,7 @@ namespace tenon {
 
 struct Arguments {
   std::vector<std::string> names;  // the words that are no flags: problems, a vehicle, a file
-  std::string wrenches, output, events, fast_phase, report, trace, dump, profile, workspace, impedance;
+  std::string wrenches, measurements, output, events, fast_phase, report, trace, dump, profile, workspace, impedance;
   std::optional<std::string> solver, solvers, initial, inverse, forward;
   std::vector<std::string> set;
   std::optional<double> tolerance, time_limit;

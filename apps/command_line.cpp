@@ -25,6 +25,8 @@ const std::map<std::string, std::function<CLI::Option*(CLI::App&, Arguments&)>>&
   static const CLI::Validator count = CLI::Range(0, 1 << 30).description("");
   static const std::map<std::string, std::function<CLI::Option*(App&, Args&)>> table{
       {"wrenches", [](App& a, Args& v) { return a.add_option("--wrenches", v.wrenches, "the wrench log")->type_name("FILE.csv"); }},
+      {"measurements",
+       [](App& a, Args& v) { return a.add_option("--measurements", v.measurements, "the record to estimate from")->type_name("FILE.csv"); }},
       {"output", [](App& a, Args& v) { return a.add_option("--output", v.output, "where the record goes")->type_name("FILE.csv"); }},
       {"events", [](App& a, Args& v) { return a.add_option("--events", v.events, "where the events go")->type_name("FILE.csv"); }},
       {"fast-phase",

@@ -7,6 +7,7 @@ int run_allocate(const Arguments&);
 int run_bench(const Arguments&);
 int run_check(const Arguments&);
 int run_compare(const Arguments&);
+int run_estimate(const Arguments&);
 int run_fit(const Arguments&);
 int run_list(const Arguments&);
 int run_report(const Arguments&);
@@ -41,6 +42,13 @@ const std::vector<Verb>& verbs() {
        1,
        {"output", "events", "report", "fast-phase", "solver", "set", "tolerance", "json", "quiet", "real-time"},
        &run_simulate},
+      {"estimate",
+       "a scene's hidden state and parameters, from a record",
+       "SCENE",
+       1,
+       1,
+       {"measurements", "output", "report", "set", "json", "quiet"},
+       &run_estimate},
       sweep_verb(&run_sweep),
       {"solve",
        "one nonlinear program",
