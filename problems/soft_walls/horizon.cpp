@@ -35,11 +35,10 @@ Horizon::Horizon(const Model& model, const Weights& weights, int intervals, doub
       intervals_(intervals),
       rounding_(rounding),
       start_(start),
-      terminal_(riccati_solution(model, weights.state, weights.input)) {
+      terminal_(riccati_solution(model, weights)),
+      gain_(regulator_gain(model, weights, terminal_)) {
   if (intervals < 1) throw std::invalid_argument("a horizon of " + std::to_string(intervals) + " intervals (expected at least 1)");
   if (!(rounding > 0)) throw std::invalid_argument("the walls' law is rounded over " + std::to_string(rounding) + " m (expected more than 0)");
-  const State pb = terminal_ * model.b();
-  gain_ = pb.transpose() * model.a() / (weights.input + model.b().dot(pb));
 }
 
 void Horizon::observe(double, ConstVectorRef measurements, ConstVectorRef) {

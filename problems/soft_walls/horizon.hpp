@@ -12,11 +12,6 @@
 
 namespace tenon::soft_walls {
 
-struct Weights {
-  State state{10, 2, 1, 1};
-  double input = 1;
-};
-
 class Horizon final : public HorizonProgram {
  public:
   using StageSizes = tenon::StageSizes<4, 1>;

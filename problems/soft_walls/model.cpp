@@ -26,20 +26,25 @@ double Model::wall_force(double p) const {
   return parameters_.stiffness * (std::max(0.0, p - parameters_.wall) - std::max(0.0, -p - parameters_.wall));
 }
 
-Eigen::Matrix4d riccati_solution(const Model& model, const State& state_weight, double input_weight) {
+Eigen::RowVector4d regulator_gain(const Model& model, const Weights& weights, const Eigen::Matrix4d& p) {
+  const State pb = p * model.b();
+  return pb.transpose() * model.a() / (weights.input + model.b().dot(pb));
+}
+
+Eigen::Matrix4d riccati_solution(const Model& model, const Weights& weights) {
   constexpr int kMostIterations = 100000;
-  const Eigen::Matrix4d q = state_weight.asDiagonal();
+  constexpr double kTolerance = 1e-12;  // relative
+  const Eigen::Matrix4d q = weights.state.asDiagonal();
   Eigen::Matrix4d p = q;
   for (int k = 0; k < kMostIterations; ++k) {
-    const State pb = p * model.b();
-    const Eigen::RowVector4d gain = pb.transpose() * model.a() / (input_weight + model.b().dot(pb));
-    Eigen::Matrix4d next = q + model.a().transpose() * p * (model.a() - model.b() * gain);
-    next = (next + next.transpose()).eval() / 2;
-    const double change = (next - p).lpNorm<Eigen::Infinity>();
+    const Eigen::Matrix4d closed = model.a() - model.b() * regulator_gain(model, weights, p);
+    const Eigen::Matrix4d step = q + model.a().transpose() * p * closed;
+    const Eigen::Matrix4d next = (step + step.transpose()) / 2;
+    const bool settled = (next - p).lpNorm<Eigen::Infinity>() <= kTolerance * next.lpNorm<Eigen::Infinity>();
     p = next;
-    if (change <= 1e-12 * p.lpNorm<Eigen::Infinity>()) return p;
+    if (settled) return p;
   }
-  throw std::invalid_argument("the Riccati equation of the soft walls' terminal cost has no solution (expected an input that reaches every state, weights more than 0)");
+  throw std::invalid_argument("the Riccati equation of the soft walls' terminal cost does not settle (expected weights more than 0)");
 }
 
 }  // namespace tenon::soft_walls

@@ -46,7 +46,15 @@ class Model {
   State b_, d_, tip_;
 };
 
-/// P = Q + A' P A - A' P B (R + B' P B)^-1 B' P A, by iteration from Q; Q diagonal. Throws std::invalid_argument where it does not converge.
-Eigen::Matrix4d riccati_solution(const Model& model, const State& state_weight, double input_weight);
+struct Weights {
+  State state{10, 2, 1, 1};  // diagonal of Q
+  double input = 1;          // R
+};
+
+/// P = Q + A' P A - A' P B (R + B' P B)^-1 B' P A, by iteration from Q. Throws std::invalid_argument where it does not converge.
+Eigen::Matrix4d riccati_solution(const Model& model, const Weights& weights);
+
+/// K = (R + B' P B)^-1 B' P A of the regulator u = -K x.
+Eigen::RowVector4d regulator_gain(const Model& model, const Weights& weights, const Eigen::Matrix4d& p);
 
 }  // namespace tenon::soft_walls
