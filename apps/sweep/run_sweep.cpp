@@ -87,7 +87,7 @@ int lead(const Arguments& arguments, Crew& crew, const ExperimentFactory& make_e
   make_report(arguments, {path});
   const SweepSummary summary(arguments.names.front(), record.names(), experiment->severity(), record.rows());
   if (arguments.json)
-    print(summary.json());
+    print(summary.json().set("processes", crew.size()));
   else if (!arguments.quiet)
     fmt::print(path == "-" ? stderr : stdout, "{}", summary.text());
   return kFinished;
