@@ -9,8 +9,10 @@
 
 #include "tenon/core/controller.hpp"
 #include "tenon/core/estimator.hpp"
+#include "tenon/core/horizon_options.hpp"
 #include "tenon/core/horizon_program.hpp"
 #include "tenon/core/plant.hpp"
+#include "tenon/core/scenery.hpp"
 
 namespace tenon {
 
@@ -26,7 +28,9 @@ struct ControlTask {
   std::unique_ptr<Plant> plant;
   std::unique_ptr<HorizonProgram> program;
   std::unique_ptr<Estimator> estimator;  // null where the measurements say it all
+  HorizonOptions options;                // how the program is solved, unless the caller says otherwise
   std::vector<Baseline> baselines;
+  Scenery scenery;  // its picture, for the record
 };
 
 }  // namespace tenon

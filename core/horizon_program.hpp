@@ -28,6 +28,11 @@ class HorizonProgram : public Nlp {
   virtual void commands(const Point& plan, double elapsed, VectorRef commands) const = 0;
 
   virtual std::string command_name(int i) const { return "command" + std::to_string(i + 1); }
+
+  /// Of the record: what a plan foresees, in a few numbers (its states at some instants). `plan_outputs` allocates nothing.
+  virtual int num_plan_outputs() const { return 0; }
+  virtual std::string plan_output_name(int i) const { return "plan" + std::to_string(i + 1); }
+  virtual void plan_outputs(const Point& plan, VectorRef values) const { static_cast<void>(plan), static_cast<void>(values); }
 };
 
 }  // namespace tenon

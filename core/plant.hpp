@@ -1,7 +1,7 @@
 // What a controller is tried on: a simulated world with its noise and its surprises, for those who hold it without knowing which it is.
 //
-// All that is random in it is drawn from the seed of `reset`, and nothing else is: a run is repeated bit for bit. What the world hides (the
-// truth) is there for records and judges; no controller is given it.
+// All that is random in it is drawn from the seed of `reset`, and nothing else is: a run is repeated bit for bit. Seed 0 draws nothing: the
+// world as its scene states it. What the world hides (the truth) is there for records and judges; no controller is given it.
 #pragma once
 
 #include <cstdint>
