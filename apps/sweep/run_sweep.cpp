@@ -12,6 +12,7 @@
 #include "tenon/apps/make_report.hpp"
 #include "tenon/apps/progress.hpp"
 #include "tenon/apps/sweep/open_experiment.hpp"
+#include "tenon/apps/sweep/run_margins.hpp"
 #include "tenon/apps/sweep/sweep_record.hpp"
 #include "tenon/apps/sweep/sweep_summary.hpp"
 #include "tenon/mpc/monte_carlo.hpp"
@@ -106,6 +107,7 @@ Verb sweep_verb(int (*run)(const Arguments&)) {
 }
 
 int sweep(const Arguments& arguments, Crew& crew, const SolverFactory& make_solver) {
+  if (arguments.margins) return crew.is_first() ? run_margins(arguments, make_solver) : kFinished;
   if (arguments.samples < 1) throw std::invalid_argument("sweep: no samples (expected --samples N, at least 1)");
   if (arguments.resume && arguments.output.empty()) throw std::invalid_argument("--resume: no record to go on with (expected --output FILE.csv too)");
   check_report(arguments);
