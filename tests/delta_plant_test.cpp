@@ -207,7 +207,8 @@ TEST(DeltaPlant, SaysWhereTheArmsDoNotReachAndStaysWhereItWas) {
   EXPECT_FALSE(plant.step({0, 0, 0}, {0, 0, 0}, [](const ToolMotion&) { return Wrench{{std::nan(""), 0, 0}, {0, 0, 0}}; }));
   EXPECT_EQ(plant.wrist(), kStart);
   bool goes_on = true;
-  for (int k = 0; k < 2000 && goes_on; ++k) goes_on = plant.step({0, 0, 0}, {0, 0, 0}, [](const ToolMotion&) { return Wrench{{0, 0, 50}, {0, 0, 0}}; });
+  for (int k = 0; k < 2000 && goes_on; ++k)
+    goes_on = plant.step({0, 0, 0}, {0, 0, 0}, [](const ToolMotion&) { return Wrench{{0, 0, 50}, {0, 0, 0}}; });
   EXPECT_FALSE(goes_on);  // pulled to the end of its reach
   EXPECT_TRUE(plant.angles().allFinite());
 }

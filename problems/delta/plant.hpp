@@ -22,10 +22,10 @@ namespace tenon::delta {
 
 /// The tool's point and frame, in world axes (z down).
 struct ToolMotion {
-  Vector3 position{0, 0, 0};                // m
-  Matrix3 attitude = Matrix3::Identity();   // tool to world
-  Vector3 velocity{0, 0, 0};                // of the point, m/s
-  Vector3 angular_velocity{0, 0, 0};        // rad/s
+  Vector3 position{0, 0, 0};               // m
+  Matrix3 attitude = Matrix3::Identity();  // tool to world
+  Vector3 velocity{0, 0, 0};               // of the point, m/s
+  Vector3 angular_velocity{0, 0, 0};       // rad/s
 };
 
 /// What acts on the tool from outside, at its point, in world axes.
