@@ -101,6 +101,8 @@ class FlightDae final : public Dae {
   void tick(DaeState& state, Memory& memory) const;
   void watch_limits(DaeState& state, ConstVectorRef last_angles, const EventLog& log) const;
   std::string lost(const DaeState& state) const;
+  Wrench hover_wrench(double t) const;
+  Wrench hover_error(double t, const Wrench& wrench) const;
 
   Mission mission_;
   MakeAllocator make_allocator_;

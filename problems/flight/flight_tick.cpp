@@ -11,6 +11,7 @@ namespace tenon::flight {
 namespace {
 
 constexpr double kSameInstant = 1e-9;  // of a period
+constexpr double kShort = 1e-2;        // relative, of a wrench that cannot be had
 constexpr double kAtLimit = 1e-6;      // of throttles, angles in rad, and relative of rates
 
 }  // namespace
@@ -53,18 +54,35 @@ std::string FlightDae::lost(const DaeState& state) const {
   const double distance = (state.x.head<3>() - mission_.reference.at(state.t).position).norm();
   if (distance <= mission_.lost) return "";
   std::string why = fmt::format("the flight is lost, {:.3g} m from its reference", distance);
-  const Wrench error = state.mode.held.segment<6>(at_.error());
-  const PoseControllerOptions& c = mission_.controller;
-  if (!is_stable(c.force, mission_.mass(), mission_.actuators.rotor_lag)) {
-    why += fmt::format("; with a lag of {:g} s its force gains {:g}, {:g}, {:g} are unstable", mission_.actuators.rotor_lag,
-                       c.force.proportional, c.force.integral, c.force.derivative);
-  } else if (!is_stable(c.torque, mission_.vehicle.inertia.maxCoeff(), mission_.actuators.rotor_lag)) {
-    why += fmt::format("; with a lag of {:g} s its torque gains {:g}, {:g}, {:g} are unstable", mission_.actuators.rotor_lag,
-                       c.torque.proportional, c.torque.integral, c.torque.derivative);
-  } else if (state.mode.discrete[Layout::kStatus] != 0) {
-    why += fmt::format("; the rotors give {:.3g} N and {:.3g} N m less than is asked of them", error.head<3>().norm(), error.tail<3>().norm());
+  const Wrench hover = hover_wrench(state.t), error = hover_error(state.t, hover);
+  if (error.norm() > kShort * hover.norm()) {
+    return why + fmt::format("; hovering there takes {:.3g} N, and the rotors give {:.3g} N", hover.norm(), (hover + error).head<3>().norm());
   }
+  const auto unstable = [](const char* what, const Gains& g, double lag) {
+    return fmt::format("; with a lag of {:g} s its {} gains {:g}, {:g}, {:g} make an unstable loop", lag, what, g.proportional, g.integral,
+                       g.derivative);
+  };
+  const PoseControllerOptions& controller = mission_.controller;
+  const double lag = controller.actuator_lag - controller.lead;
+  if (!is_stable(controller.force, mission_.mass(), lag)) return why + unstable("force", controller.force, lag);
+  if (!is_stable(controller.torque, mission_.vehicle.inertia.maxCoeff(), lag)) return why + unstable("torque", controller.torque, lag);
   return why;
+}
+
+/// What holds the vehicle where it should be, body axes.
+Wrench FlightDae::hover_wrench(double t) const {
+  Wrench wrench;
+  wrench << mission_.reference.at(t).attitude.conjugate() * Vector3d(0, 0, mission_.mass() * mission_.vehicle.gravity), Vector3d::Zero();
+  return wrench;
+}
+
+/// What rotors that are left give beyond it.
+Wrench FlightDae::hover_error(double t, const Wrench& wrench) const {
+  const auto allocator = make_allocator_(mission_.vehicle);
+  for (const Failure& failure : mission_.failures) {
+    if (t >= failure.t && failure.kind == Failure::Kind::rotor) allocator->fail_rotor(failure.rotor);
+  }
+  return allocator->allocate(wrench, mission_.controller.period).error;
 }
 
 void FlightDae::fail(DaeState& state, const EventLog& log) const {
