@@ -9,6 +9,7 @@ int run_check(const Arguments&);
 int run_compare(const Arguments&);
 int run_estimate(const Arguments&);
 int run_fit(const Arguments&);
+int run_fly(const Arguments&);
 int run_list(const Arguments&);
 int run_report(const Arguments&);
 int run_robot(const Arguments&);
@@ -34,6 +35,13 @@ const std::vector<Verb>& verbs() {
        1,
        {"inverse", "forward", "jacobians", "workspace", "impedance", "set", "json", "quiet"},
        &run_robot},
+      {"fly",
+       "a mission in closed loop: pose controller, allocation, actuators, rigid body",
+       "MISSION",
+       1,
+       1,
+       {"output", "events", "report", "solver", "set", "seed", "json", "quiet", "real-time"},
+       &run_fly},
       {"fit", "thrust and torque polynomials from calibration data", "BENCH.csv", 1, 1, {"degree", "constant", "json"}, &run_fit},
       {"simulate",
        "a scene in time: bodies, contacts, events, energy",
