@@ -99,6 +99,9 @@ class Dae {
   /// Its values, in the order of the pattern.
   virtual void jacobian(const DaeMode& mode, const DaePoint& at, double alpha, Workspace& workspace, std::span<double> values) const = 0;
 
+  /// Non-zeros of dF/dxdot, (nx + ny) x nx: those of the Jacobian with alpha that the one without does not account for. Dense by default.
+  virtual SparsePattern rate_jacobian_pattern() const { return SparsePattern::full(num_states() + num_algebraics(), num_states()); }
+
   /// dF/du, (nx + ny) x num_inputs.
   virtual SparsePattern input_jacobian_pattern() const { return SparsePattern::full(num_states() + num_algebraics(), num_inputs()); }
   virtual void input_jacobian(const DaeMode& mode, const DaePoint& at, Workspace& workspace, std::span<double> values) const {
