@@ -19,7 +19,7 @@ struct Arguments {
   std::vector<std::string> set;
   std::optional<double> tolerance, time_limit;
   std::optional<int> max_iterations;
-  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> seed;
   int rows = 0;
   int samples = 0;
   int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));

@@ -11,6 +11,7 @@ int run_estimate(const Arguments&);
 int run_fit(const Arguments&);
 int run_fly(const Arguments&);
 int run_list(const Arguments&);
+int run_mpc(const Arguments&);
 int run_report(const Arguments&);
 int run_robot(const Arguments&);
 int run_simulate(const Arguments&);
@@ -58,6 +59,13 @@ const std::vector<Verb>& verbs() {
        {"measurements", "output", "report", "set", "json", "quiet"},
        &run_estimate},
       sweep_verb(&run_sweep),
+      {"mpc",
+       "a receding horizon against its simulated world",
+       "SCENE",
+       1,
+       1,
+       {"output", "report", "solver", "set", "seed", "tolerance", "max-iterations", "time-limit", "json", "quiet", "real-time"},
+       &run_mpc},
       {"solve",
        "one nonlinear program",
        "PROBLEM",

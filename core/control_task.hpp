@@ -19,9 +19,12 @@
 namespace tenon {
 
 struct ControlTask {
+  /// A law that takes the plant's measurements and gives its commands; or another program, to be held as the task's own is.
   struct Baseline {
-    std::string name;
-    std::unique_ptr<Controller> controller;  // takes the plant's measurements, gives its commands
+    std::string name = {};
+    std::unique_ptr<Controller> controller = {};
+    std::unique_ptr<HorizonProgram> program = {};
+    std::unique_ptr<Estimator> estimator = {};
   };
 
   /// What a task is to bear, of which one asks how much of it: an entry of the file's [parameters].

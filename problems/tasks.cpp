@@ -5,6 +5,7 @@
 #include "tenon/core/named_file.hpp"
 #include "tenon/core/nearest_name.hpp"
 #include "tenon/problems/soft_walls/task.hpp"
+#include "tenon/problems/touch_down/task.hpp"
 
 namespace tenon {
 
@@ -19,6 +20,7 @@ struct TaskKind {
 
 constexpr TaskKind kKinds[] = {
     {"soft-walls", &soft_walls::make_task},
+    {"touch-down", &touch_down::make_task},
 };
 
 const TaskKind& kind_of(const toml_file::Document& document) {
