@@ -4,6 +4,7 @@
 
 #include "tenon/core/named_file.hpp"
 #include "tenon/core/nearest_name.hpp"
+#include "tenon/problems/peg_in_hole/task.hpp"
 #include "tenon/problems/soft_walls/task.hpp"
 
 namespace tenon {
@@ -18,6 +19,7 @@ struct TaskKind {
 };
 
 constexpr TaskKind kKinds[] = {
+    {"peg-in-hole", &peg::make_task},
     {"soft-walls", &soft_walls::make_task},
 };
 
