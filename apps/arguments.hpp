@@ -17,7 +17,7 @@ struct Arguments {
   std::vector<std::string> set;
   std::optional<double> tolerance, time_limit;
   std::optional<int> max_iterations;
-  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> seed;
   int rows = 0;
   int starts = 1;
   int degree = 2;

@@ -15,6 +15,7 @@
 #include "tenon/problems/contact/scene_file.hpp"
 #include "tenon/problems/delta/robot_file.hpp"
 #include "tenon/problems/delta/scene_file.hpp"
+#include "tenon/problems/tasks.hpp"
 #include "tenon/solvers/make_solver.hpp"
 
 namespace tenon {
@@ -59,6 +60,7 @@ std::vector<Named> scenes() {
   std::vector<Named> list;
   for (const std::string& name : contact::builtin_scenes()) list.push_back({name, contact::describe_builtin_scene(name)});
   for (const std::string& name : delta::builtin_scenes()) list.push_back({name, delta::describe_builtin_scene(name)});
+  for (const std::string& name : builtin_tasks()) list.push_back({name, describe_builtin_task(name)});
   return list;
 }
 

@@ -17,9 +17,12 @@
 namespace tenon {
 
 struct ControlTask {
+  /// A law that takes the plant's measurements and gives its commands; or another program, to be held as the task's own is.
   struct Baseline {
-    std::string name;
-    std::unique_ptr<Controller> controller;  // takes the plant's measurements, gives its commands
+    std::string name = {};
+    std::unique_ptr<Controller> controller = {};
+    std::unique_ptr<HorizonProgram> program = {};
+    std::unique_ptr<Estimator> estimator = {};
   };
 
   std::string name;

@@ -9,6 +9,7 @@
 #include "tenon/problems/optimal_control/linear_quadratic.hpp"
 #include "tenon/problems/optimal_control/swing_up.hpp"
 #include "tenon/problems/peg_in_hole/assembly_program.hpp"
+#include "tenon/problems/tasks.hpp"
 
 namespace tenon {
 
@@ -27,8 +28,24 @@ std::vector<CatalogueEntry> optimal_control() {
   };
 }
 
+/// The first horizon of a task, from its nominal start.
+CatalogueEntry first_horizon(const std::string& name, const std::string& description, const std::string& task,
+                             const std::vector<std::string>& overrides = {}) {
+  return {name, description, std::nullopt, [=] { return make_task(task, overrides).program; }};
+}
+
+std::vector<CatalogueEntry> horizons() {
+  return {
+      first_horizon("cart-pole-soft-walls", "a pole between soft walls, N = 10 (n = 54, m = 40)", "cart-pole-soft-walls"),
+      first_horizon("cart-pole-soft-walls-5", "the same, N = 5 (n = 29, m = 20)", "cart-pole-soft-walls", {"intervals=5"}),
+      first_horizon("delta-touch-down", "a wrist onto a plane, N = 25 (n = 128, m = 175)", "delta-touch-down"),
+      first_horizon("delta-touch-down-10", "the same, N = 10 (n = 53, m = 70)", "delta-touch-down", {"intervals=10"}),
+  };
+}
+
 std::vector<CatalogueEntry> collect() {
   std::vector<CatalogueEntry> all;
+  std::ranges::move(horizons(), std::back_inserter(all));
   std::ranges::move(optimal_control(), std::back_inserter(all));
   std::ranges::move(hock_schittkowski(), std::back_inserter(all));
   std::ranges::sort(all, {}, &CatalogueEntry::name);

@@ -6,6 +6,7 @@
 #include "tenon/core/nearest_name.hpp"
 #include "tenon/problems/peg_in_hole/task.hpp"
 #include "tenon/problems/soft_walls/task.hpp"
+#include "tenon/problems/touch_down/task.hpp"
 
 namespace tenon {
 
@@ -21,6 +22,7 @@ struct TaskKind {
 constexpr TaskKind kKinds[] = {
     {"peg-in-hole", &peg::make_task},
     {"soft-walls", &soft_walls::make_task},
+    {"touch-down", &touch_down::make_task},
 };
 
 const TaskKind& kind_of(const toml_file::Document& document) {

@@ -102,7 +102,7 @@ ControlTask make_task(const toml_file::Document& document) {
   }
   task.options.warm.max_iterations = 20;
   task.options.cold.max_iterations = 100;
-  task.baselines.push_back({"lqr", std::make_unique<LinearQuadraticRegulator>(model, weights)});
+  task.baselines.push_back({.name = "lqr", .controller = std::make_unique<LinearQuadraticRegulator>(model, weights)});
   task.scenery = scenery_of(model.parameters());
   return task;
 }

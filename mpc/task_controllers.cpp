@@ -1,0 +1,35 @@
+#include "tenon/mpc/task_controllers.hpp"
+
+#include <stdexcept>
+
+#include "tenon/core/nearest_name.hpp"
+#include "tenon/mpc/receding_horizon.hpp"
+
+namespace tenon {
+
+namespace {
+
+const std::string kOwn = "mpc";
+
+}  // namespace
+
+std::vector<std::string> controller_names(const ControlTask& task) {
+  std::vector<std::string> names{kOwn};
+  for (const ControlTask::Baseline& baseline : task.baselines) names.push_back(baseline.name);
+  return names;
+}
+
+std::unique_ptr<Controller> take_controller(ControlTask& task, const std::string& name, const SolverFactory& make_solver) {
+  const auto horizon = [&](std::unique_ptr<HorizonProgram> program, std::unique_ptr<Estimator> estimator) {
+    return std::make_unique<RecedingHorizon>(std::move(program), std::move(estimator), make_solver, task.options, task.period);
+  };
+  if (name == kOwn) return horizon(std::move(task.program), std::move(task.estimator));
+  for (ControlTask::Baseline& baseline : task.baselines) {
+    if (baseline.name != name) continue;
+    if (baseline.program) return horizon(std::move(baseline.program), std::move(baseline.estimator));
+    return std::move(baseline.controller);
+  }
+  throw std::invalid_argument("unknown controller '" + name + "', the nearest is '" + nearest_name(name, controller_names(task)) + "'");
+}
+
+}  // namespace tenon
