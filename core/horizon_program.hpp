@@ -24,6 +24,9 @@ class HorizonProgram : public Nlp {
   /// follow from it. Allocates nothing.
   virtual void observe(double t, ConstVectorRef measurements, ConstVectorRef estimates) = 0;
 
+  /// Whether what was last observed says that going on from the plan before leads nowhere: the next solve then starts from the initial point.
+  virtual bool wants_fresh_start() const { return false; }
+
   /// What a plan commands `elapsed` s after the observation it was made for; beyond its end, what holds still. Allocates nothing.
   virtual void commands(const Point& plan, double elapsed, VectorRef commands) const = 0;
 

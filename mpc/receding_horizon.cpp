@@ -93,7 +93,7 @@ void RecedingHorizon::start_afresh(Point& plan) const {
 }
 
 Result RecedingHorizon::solve_from_guess() {
-  const bool cold = !has_plan_ || failed_;
+  const bool cold = !has_plan_ || failed_ || program_->wants_fresh_start();
   if (cold)
     start_afresh(trial_);
   else

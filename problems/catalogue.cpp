@@ -8,6 +8,7 @@
 #include "tenon/problems/classic/hock_schittkowski.hpp"
 #include "tenon/problems/optimal_control/linear_quadratic.hpp"
 #include "tenon/problems/optimal_control/swing_up.hpp"
+#include "tenon/problems/peg_in_hole/assembly_program.hpp"
 #include "tenon/problems/tasks.hpp"
 
 namespace tenon {
@@ -20,6 +21,8 @@ std::vector<CatalogueEntry> optimal_control() {
        [] { return std::make_unique<SwingUp>(cart_pole()); }},
       {"lq", "a chain of masses and springs, 12 states, 6 boxed inputs, N = 20 (n = 372, m = 240)", std::nullopt,
        [] { return std::make_unique<LinearQuadratic<Dynamic, Dynamic>>(mass_spring_chain(12, 6, 20)); }},
+      {"peg-in-hole", "a peg finds its way into a hole 0.9 mm and 1 degree aside, contact by complementarity, N = 40 (n = 852, m = 960)",
+       std::nullopt, [] { return std::make_unique<peg::AssemblyProgram>(peg::single_plan()); }},
       {"pendulum", "swing-up of a pendulum in 1 s by tracking, N = 20 (n = 104, m = 80)", 2242.828131,
        [] { return std::make_unique<SwingUp>(pendulum()); }},
   };

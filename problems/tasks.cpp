@@ -4,6 +4,7 @@
 
 #include "tenon/core/named_file.hpp"
 #include "tenon/core/nearest_name.hpp"
+#include "tenon/problems/peg_in_hole/task.hpp"
 #include "tenon/problems/soft_walls/task.hpp"
 #include "tenon/problems/touch_down/task.hpp"
 
@@ -19,6 +20,7 @@ struct TaskKind {
 };
 
 constexpr TaskKind kKinds[] = {
+    {"peg-in-hole", &peg::make_task},
     {"soft-walls", &soft_walls::make_task},
     {"touch-down", &touch_down::make_task},
 };

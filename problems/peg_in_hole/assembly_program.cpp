@@ -21,6 +21,8 @@ constexpr double kHeightWeight = 0.02, kLateralWeight = 0.3, kSpringForceWeight 
                  kForceWeight = 1e-3, kForceSlope = 1e-4;
 constexpr double kForceGuess = 0.1;  // N
 
+constexpr double kProgress = 0.5, kPatience = 0.15;  // mm, s: less than so much in so long is a jam
+
 }  // namespace
 
 /// What an interval's formulas share at one x.
@@ -34,7 +36,7 @@ struct AssemblyProgram::Interval {
 };
 
 struct AssemblyProgram::Contacts final : Nlp::Scratch {
-  explicit Contacts(int intervals) : intervals(static_cast<std::size_t>(intervals)) {}
+  explicit Contacts(int count) : intervals(static_cast<std::size_t>(count)) {}
   std::vector<Interval> intervals;
 };
 
@@ -64,7 +66,7 @@ std::string AssemblyProgram::command_name(int i) const {
   return kCommandNames[static_cast<std::size_t>(i)];
 }
 
-void AssemblyProgram::observe(double, ConstVectorRef measurements, ConstVectorRef estimates) {
+void AssemblyProgram::observe(double t, ConstVectorRef measurements, ConstVectorRef estimates) {
   const double lever = problem_.geometry.lever;
   pose_ = to_millimetres(measurements.segment<3>(kMeasuredPose), lever);
   velocity_ = to_millimetres(measurements.segment<3>(kMeasuredVelocity), lever) / kUnitOfRate;
@@ -72,6 +74,13 @@ void AssemblyProgram::observe(double, ConstVectorRef measurements, ConstVectorRe
   rate_ = to_millimetres(measurements.segment<3>(kMeasuredRate), lever) / kUnitOfRate;
   hole_ = to_millimetres(estimates, lever);
   if (problem_.follow_hole) lateral_ = hole_;
+  watch_progress(t);
+}
+
+void AssemblyProgram::watch_progress(double t) {
+  const bool again = t <= progress_time_, moves = std::abs(pose_[1] - progress_height_) > kProgress;
+  is_jammed_ = !again && !moves && t - progress_time_ > kPatience;
+  if (again || moves || is_jammed_) progress_height_ = pose_[1], progress_time_ = t;
 }
 
 void AssemblyProgram::commands(const Point& plan, double elapsed, VectorRef commands) const {

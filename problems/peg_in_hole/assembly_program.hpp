@@ -46,6 +46,8 @@ class AssemblyProgram final : public HorizonProgram {
 
   /// Measurements and estimates as in channels.hpp.
   void observe(double t, ConstVectorRef measurements, ConstVectorRef estimates) override;
+  /// Where the peg has got no further for a while: a plan that stays where it is may be a local optimum, and tends to remain one.
+  bool wants_fresh_start() const override { return is_jammed_; }
   void commands(const Point& plan, double elapsed, VectorRef commands) const override;
   std::string command_name(int i) const override;
 
@@ -80,12 +82,15 @@ class AssemblyProgram final : public HorizonProgram {
   struct Contacts;
   struct Interval;
   double wanted_height(int k) const;
+  void watch_progress(double t);
 
   AssemblyProblem problem_;
   Vector3d inertia_;        // m = M / dt, N for each 100 mm/s
   Vector3d keep_, yield_;   // a and b of (2.3): what of a spring is left after an interval, and what a force adds
   double step_;             // c, mm for each 100 mm/s
   Vector3d pose_, velocity_, spring_, rate_, hole_, lateral_;
+  double progress_height_ = 0, progress_time_ = 0;  // mm, s: where and when the peg was last seen to have got on
+  bool is_jammed_ = false;
 };
 
 /// A single plan of 1.2 s into a hole that lies 0.9 mm and 1 degree beside the peg's path.

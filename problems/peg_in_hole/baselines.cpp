@@ -10,7 +10,7 @@ namespace tenon::peg {
 
 namespace {
 
-constexpr double kDown = 20, kEnd = -20.3;       // mm/s, mm
+constexpr double kDown = 20;                     // mm/s
 constexpr double kTilt = std::numbers::pi / 18;  // rad
 constexpr double kHook = 2.25;                   // mm: how far the tilted peg stands aside, so that its low corner is over the hole
 constexpr double kTurn = 0.6;                    // rad/s
@@ -25,8 +25,8 @@ double towards(double from, double to, double speed, double period) {
 
 }  // namespace
 
-ReferenceController::ReferenceController(const Geometry& geometry, const Impedance& impedance, const Vector3d& start, double period)
-    : geometry_(geometry), impedance_(impedance), start_(start), reference_(start), period_(period) {}
+ReferenceController::ReferenceController(const Geometry& geometry, const Impedance& impedance, const Vector3d& start, double depth, double period)
+    : geometry_(geometry), impedance_(impedance), depth_(depth), start_(start), reference_(start), period_(period) {}
 
 int ReferenceController::num_measurements() const {
   return kMeasurements;
@@ -49,7 +49,7 @@ void ReferenceController::update(double t, ConstVectorRef measurements, VectorRe
 }
 
 Vector3d StraightDown::rate(double, const Vector3d& reference, const Vector3d&) {
-  return {0, towards(reference[1], kEnd, kDown, period()), 0};
+  return {0, towards(reference[1], -depth_, kDown, period()), 0};
 }
 
 void TiltAndSlide::reset() {
@@ -74,7 +74,7 @@ Vector3d TiltAndSlide::rate(double, const Vector3d& reference, const Vector3d& f
       const double turn = towards(theta, 0, kTurn, period()), half = geometry_.width / 2;
       return {-half * std::sin(theta) * turn + 0.2 * give_x, half * std::cos(theta) * turn, lever * turn};
     }
-    case Phase::insert: return {give_x, towards(reference[1], kEnd, kInsert, period()), give_phi};
+    case Phase::insert: return {give_x, towards(reference[1], -depth_, kInsert, period()), give_phi};
   }
   return Vector3d::Zero();
 }

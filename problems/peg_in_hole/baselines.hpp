@@ -12,7 +12,8 @@ namespace tenon::peg {
 /// A controller that moves a reference from where the peg starts.
 class ReferenceController : public Controller {
  public:
-  ReferenceController(const Geometry& geometry, const Impedance& impedance, const Vector3d& start, double period);
+  /// `start` and `depth` (below the nominal mouth) in mm, the period in s.
+  ReferenceController(const Geometry& geometry, const Impedance& impedance, const Vector3d& start, double depth, double period);
 
   int num_measurements() const override;
   int num_commands() const override;
@@ -26,13 +27,14 @@ class ReferenceController : public Controller {
 
   Geometry geometry_;
   Impedance impedance_;
+  double depth_;
 
  private:
   Vector3d start_, reference_;
   double period_;
 };
 
-/// Down at 20 mm/s until 20.3 mm below the nominal mouth.
+/// Down at 20 mm/s.
 class StraightDown final : public ReferenceController {
  public:
   using ReferenceController::ReferenceController;

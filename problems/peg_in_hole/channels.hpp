@@ -12,8 +12,10 @@ namespace tenon::peg {
 /// Of the peg's bottom centre, then the contact force on it as a filter passes it on, then the reference that the inner loop follows now.
 inline constexpr int kMeasuredPose = 0, kMeasuredVelocity = 3, kMeasuredForce = 6, kMeasuredReference = 9, kMeasuredRate = 12,
                      kMeasurements = 15;
-inline constexpr std::array<const char*, kMeasurements> kMeasurementNames{"x",  "z",  "theta", "vx", "vz", "omega",  "Fx",     "Fz",
-                                                                          "My", "rx", "rz",    "rt", "ux", "uz", "ut"};
+inline constexpr std::array<const char*, kMeasurements> kMeasurementNames{
+    "measured_x",  "measured_z",           "measured_theta",       "measured_vx",              "measured_vz",
+    "measured_omega", "measured_Fx",       "measured_Fz",          "measured_My",              "measured_reference_x",
+    "measured_reference_z", "measured_reference_theta", "measured_reference_rate_x", "measured_reference_rate_z", "measured_reference_rate_theta"};
 
 /// The reference at this instant, the rate at which it goes on, and the stiffness that draws the peg to it (N/m, N/m, N m/rad).
 inline constexpr int kReference = 0, kReferenceRate = 3, kStiffness = 6, kCommands = 9;
@@ -23,7 +25,7 @@ inline constexpr std::array<const char*, kCommands> kCommandNames{"reference_x",
 
 /// The pose of the hole's mouth.
 inline constexpr int kEstimates = 3;
-inline constexpr std::array<const char*, kEstimates> kEstimateNames{"hole_x", "hole_z", "hole_theta"};
+inline constexpr std::array<const char*, kEstimates> kEstimateNames{"estimate_hole_x", "estimate_hole_z", "estimate_hole_theta"};
 
 /// m, m, rad to mm, mm, mm of phi; with a lever of mm.
 inline Eigen::Vector3d to_millimetres(const Eigen::Vector3d& si, double lever) {

@@ -18,7 +18,7 @@ struct HoleEstimatorOptions {
   HolePrior prior;
   Eigen::Array3i cells{61, 1, 31};  // x, z, theta
   double sigma = 0.06;              // mm: what a gap is uncertain by
-  double least_deviation = 0.02;    // mm: never surer than this
+  double least_deviation = 0.04;    // mm: never surer than this
 };
 
 class HoleEstimator final : public Estimator {

@@ -17,9 +17,8 @@ constexpr std::size_t kSustained = 100;    // ms, over which a sustained force i
 
 constexpr std::array<const char*, 9> kVerdictNames{"hole_x",           "hole_z",          "hole_theta",    "success", "time",
                                                    "first_touch_peak", "sustained_force", "largest_force", "depth"};
-constexpr std::array<const char*, 16> kOutputNames{"x",      "z",      "theta",        "vx",          "vz",          "omega",
-                                                   "hole_x", "hole_z", "hole_theta",   "reference_x", "reference_z", "reference_theta",
-                                                   "Fx",     "Fz",     "My",           "depth"};
+constexpr std::array<const char*, 13> kOutputNames{"x",      "z",          "theta", "vx", "vz", "omega", "hole_x",
+                                                   "hole_z", "hole_theta", "Fx",    "Fz", "My", "depth"};
 
 }  // namespace
 
@@ -42,15 +41,20 @@ std::string PegPlant::measurement_name(int i) const {
 std::string PegPlant::command_name(int i) const {
   return kCommandNames[static_cast<std::size_t>(i)];
 }
+double PegPlant::noise() {
+  return surprises_ ? random_.normal() : 0;
+}
 double PegPlant::time() const {
   return kStep * static_cast<double>(steps_);
 }
 
 void PegPlant::reset(std::uint64_t seed) {
-  random_.seed(seed);
-  normal_.reset();
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  for (int i = 0; i < 3; ++i) hole_[i] = world_.prior.middle[i] + world_.prior.half_width[i] * uniform(random_);
+  random_ = Random(seed);
+  surprises_ = seed != 0;
+  hole_ = world_.prior.middle;
+  if (surprises_) {
+    for (int i = 0; i < 3; ++i) hole_[i] += world_.prior.half_width[i] * random_.uniform(-1, 1);
+  }
   steps_ = 0;
   pose_ = reference_ = seen_pose_ = world_.start;
   for (Vector3d* zero : {&rate_, &reference_rate_, &stiffness_, &seen_rate_, &drive_, &contact_force_, &filtered_force_}) zero->setZero();
@@ -73,7 +77,7 @@ void PegPlant::advance(double t_end, ConstVectorRef commands) {
 void PegPlant::sample_encoders() {
   constexpr double kPeriod = kStep * kStepsPerSample;
   const Vector3d before = seen_pose_;
-  for (int i = 0; i < 3; ++i) seen_pose_[i] = pose_[i] + world_.encoder_noise * normal_(random_);
+  for (int i = 0; i < 3; ++i) seen_pose_[i] = pose_[i] + world_.encoder_noise * noise();
   const Vector3d difference = (seen_pose_ - before) / kPeriod;
   seen_rate_ += kPeriod / (kPeriod + kRateFilter) * (difference - seen_rate_);
 }
@@ -129,7 +133,7 @@ void PegPlant::measure(VectorRef values) {
   values.segment<3>(kMeasuredPose) = to_si(seen_pose_, lever);
   values.segment<3>(kMeasuredVelocity) = to_si(seen_rate_, lever);
   for (int i = 0; i < 3; ++i) {
-    values[kMeasuredForce + i] = (filtered_force_[i] + world_.force_noise * normal_(random_)) * (i == 2 ? 1e-3 * lever : 1);
+    values[kMeasuredForce + i] = (filtered_force_[i] + world_.force_noise * noise()) * (i == 2 ? 1e-3 * lever : 1);
   }
   values.segment<3>(kMeasuredReference) = to_si(reference_, lever);
   values.segment<3>(kMeasuredRate) = to_si(reference_rate_, lever);
@@ -151,12 +155,11 @@ void PegPlant::outputs(VectorRef values) const {
   values.segment<3>(0) = to_si(pose_, lever);
   values.segment<3>(3) = to_si(rate_, lever);
   values.segment<3>(6) = to_si(hole_, lever);
-  values.segment<3>(9) = to_si(reference_, lever);
-  values.segment<3>(12) << contact_force_.head<2>(), 1e-3 * lever * contact_force_[2];
-  values[15] = 1e-3 * depth(world_.geometry, pose_, hole_);
+  values.segment<3>(9) << contact_force_.head<2>(), 1e-3 * lever * contact_force_[2];
+  values[12] = 1e-3 * depth(world_.geometry, pose_, hole_);
   for (int i = 0; i < kContacts; ++i) {
-    values[16 + i] = 1e-3 * gap_[static_cast<std::size_t>(i)];
-    values[16 + kContacts + i] = pressure_[static_cast<std::size_t>(i)];
+    values[13 + i] = 1e-3 * gap_[static_cast<std::size_t>(i)];
+    values[13 + kContacts + i] = pressure_[static_cast<std::size_t>(i)];
   }
 }
 

@@ -5,10 +5,10 @@
 // Steps of 20 us (semi-implicit Euler); the inner loop sees the encoders' noise once a millisecond. Equations: peg_in_hole.md, section 3.
 #pragma once
 
-#include <random>
 #include <vector>
 
 #include "tenon/core/plant.hpp"
+#include "tenon/core/random.hpp"
 #include "tenon/problems/peg_in_hole/geometry.hpp"
 #include "tenon/problems/peg_in_hole/impedance.hpp"
 
@@ -59,12 +59,13 @@ class PegPlant final : public Plant {
   void sample_encoders();
   void step(const Vector3d& damping);
   void judge();
+  double noise();
   double time() const;
 
   World world_;
   double damping_;  // N s/mm, d of a contact
-  std::mt19937_64 random_;
-  std::normal_distribution<double> normal_;
+  Random random_{0};
+  bool surprises_ = false;  // seed 0: the hole in the middle, no noise
 
   long steps_ = 0;
   Vector3d hole_, pose_, rate_;                // mm, mm/s

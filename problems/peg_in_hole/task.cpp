@@ -1,0 +1,95 @@
+#include "tenon/problems/peg_in_hole/task.hpp"
+
+#include "tenon/problems/peg_in_hole/assembly_program.hpp"
+#include "tenon/problems/peg_in_hole/baselines.hpp"
+#include "tenon/problems/peg_in_hole/channels.hpp"
+#include "tenon/problems/peg_in_hole/hole_estimator.hpp"
+#include "tenon/problems/peg_in_hole/plant.hpp"
+#include "tenon/problems/peg_in_hole/scenery.hpp"
+#include "tenon/problems/task_keys.hpp"
+
+namespace tenon::peg {
+
+namespace {
+
+using toml_file::Table;
+
+constexpr double kMillimetre = 1e-3;  // m
+
+World read_world(const Table& root, const Table& parameters) {
+  World world;
+  const double lever = world.geometry.lever;
+  world.geometry.clearance = positive(parameters, "clearance", 2e-4) / kMillimetre;
+  world.friction = not_negative(parameters, "friction", world.friction);
+  const Vector3d offset(parameters.number("offset_x", 0), parameters.number("offset_z", 0), parameters.number("offset_theta", 0));
+  world.prior.middle = to_millimetres(offset, lever);
+  world.prior.half_width.setZero();
+  if (const auto table = root.table("uncertainty", {"x", "z", "theta"})) {
+    const Vector3d half(not_negative(*table, "x", 0), not_negative(*table, "z", 0), not_negative(*table, "theta", 0));
+    world.prior.half_width = to_millimetres(half, lever);
+  }
+  if (const auto table = root.table("plant", {"mass", "contact_stiffness", "contact_damping_ratio", "encoder_noise", "force_noise"})) {
+    world.mass = table->vector3("mass", {0.8, 0.8, 3e-4});
+    if (!(world.mass.minCoeff() > 0)) throw InputError(table->position("mass"), "a mass is not positive", "more than 0");
+    world.mass[2] /= lever * lever * kMillimetre * kMillimetre;
+    world.contact_stiffness = positive(*table, "contact_stiffness", 2e5) * kMillimetre;
+    world.contact_damping_ratio = not_negative(*table, "contact_damping_ratio", world.contact_damping_ratio);
+    world.encoder_noise = not_negative(*table, "encoder_noise", 5e-6) / kMillimetre;
+    world.force_noise = not_negative(*table, "force_noise", world.force_noise);
+  }
+  return world;
+}
+
+AssemblyProblem read_horizon(const Table& root, const World& world) {
+  AssemblyProblem problem;
+  problem.geometry = world.geometry;
+  problem.pose = world.start;
+  problem.depth += world.prior.half_width[1];
+  if (const auto table = root.table("horizon", {"intervals", "interval", "speed", "smoothing", "complementarity"})) {
+    problem.intervals = positive_integer(*table, "intervals", problem.intervals);
+    problem.interval = positive(*table, "interval", problem.interval);
+    problem.speed = positive(*table, "speed", 0.025) / kMillimetre;
+    problem.smoothing = positive(*table, "smoothing", 2e-5) / kMillimetre;
+    problem.complementarity = positive(*table, "complementarity", 1e-5) / kMillimetre;
+  }
+  return problem;
+}
+
+}  // namespace
+
+ControlTask make_task(const toml_file::Document& document) {
+  const Table root = document.root({"task", "parameters", "uncertainty", "horizon", "plant"});
+  const Table parameters = required_table(
+      root, "parameters", {"clearance", "friction", "offset_x", "offset_z", "offset_theta", "rate", "iterations", "duration"});
+  const World world = read_world(root, parameters);
+  const AssemblyProblem problem = read_horizon(root, world);
+  // What is believed: the hole in the middle of what it was drawn from, without the scene's own offset.
+  HoleEstimatorOptions belief{.geometry = world.geometry, .prior = {.half_width = world.prior.half_width}};
+  const bool height_is_known = world.prior.half_width[1] == 0;
+  belief.cells = height_is_known ? Eigen::Array3i(61, 1, 31) : Eigen::Array3i(61, 13, 21);
+
+  ControlTask task;
+  task.period = 1 / positive(parameters, "rate", 50);
+  task.duration = positive(parameters, "duration", 5);
+  task.plant = std::make_unique<PegPlant>(world);
+  task.program = std::make_unique<AssemblyProgram>(problem);
+  task.estimator = std::make_unique<HoleEstimator>(belief);
+  // The rows are well scaled as they are; a plan that is 0.5 mm or N off still moves the peg the right way.
+  for (Options* options : {&task.options.warm, &task.options.cold}) {
+    options->tolerance = 1e-4;
+    options->scaling = false;
+  }
+  task.options.warm.initial_mu = 1e-4;
+  task.options.warm.max_iterations = positive_integer(parameters, "iterations", 1);
+  task.options.cold.max_iterations = 100;
+  task.options.largest_violation = 0.5;
+
+  const Impedance soft{.stiffness = {0.5, 1, 2.5}};
+  task.baselines.push_back({"straight", std::make_unique<StraightDown>(world.geometry, problem.impedance, world.start, problem.depth, task.period)});
+  task.baselines.push_back({"soft", std::make_unique<StraightDown>(world.geometry, soft, world.start, problem.depth, task.period)});
+  task.baselines.push_back({"tilt", std::make_unique<TiltAndSlide>(world.geometry, problem.impedance, world.start, problem.depth, task.period)});
+  task.scenery = scenery_of(world.geometry);
+  return task;
+}
+
+}  // namespace tenon::peg
