@@ -3,6 +3,7 @@
 // The parts know nothing of one another: the program and the estimator are built from what is believed, before any world is drawn.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,10 +28,11 @@ struct ControlTask {
     std::unique_ptr<Estimator> estimator = {};
   };
 
-  /// What a task is to bear, of which one asks how much of it: an entry of the file's [parameters].
+  /// A surprise of which a task bears some: worlds with so much of it, all else drawn as ever.
   struct Capture {
-    std::string parameter;
-    double largest = 0;  // to look for, in the parameter's unit
+    std::string quantity;  // with its unit
+    double largest = 0;    // to look for
+    std::function<std::unique_ptr<Plant>(double amount)> plant;
   };
 
   std::string name;

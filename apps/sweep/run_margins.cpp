@@ -23,16 +23,14 @@ namespace {
 constexpr int kBisections = 7;
 constexpr int kSamples = 8;  // where --samples does not say
 
-/// Whether all worlds with this offset, to either side, are a success.
-bool is_certain(Arguments arguments, const std::string& parameter, double offset, const SolverFactory& make_solver) {
-  std::vector<std::uint64_t> seeds(static_cast<std::size_t>(std::max(arguments.samples, 1)));
+/// Whether all worlds with so much of it, to either side, are a success.
+bool is_certain(const Arguments& arguments, double amount, const SolverFactory& make_solver) {
+  std::vector<std::uint64_t> seeds(static_cast<std::size_t>(arguments.samples));
   std::iota(seeds.begin(), seeds.end(), arguments.seed);
-  arguments.baselines = false;
   bool certain = true;
-  for (const double signed_offset : {offset, -offset}) {
-    Arguments shifted = arguments;
-    shifted.set.push_back(fmt::format("{}={}", parameter, signed_offset));
-    const ExperimentFactory make_experiment = open_experiment(shifted, make_solver);
+  for (const double signed_amount : {amount, -amount}) {
+    const ExperimentFactory make_experiment =
+        open_experiment(arguments, make_solver, [=](const ControlTask& task) { return task.capture->plant(signed_amount); });
     const std::vector<std::string> names = make_experiment()->names();
     const auto success = std::find(names.begin(), names.end(), "success") - names.begin();
     run_samples(make_experiment, seeds, arguments.threads,
@@ -43,12 +41,12 @@ bool is_certain(Arguments arguments, const std::string& parameter, double offset
   return certain;
 }
 
-double certain_offset(const Arguments& arguments, const ControlTask::Capture& capture, const SolverFactory& make_solver) {
-  if (is_certain(arguments, capture.parameter, capture.largest, make_solver)) return capture.largest;
-  double certain = 0, uncertain = capture.largest;
+double largest_certain(const Arguments& arguments, double largest, const SolverFactory& make_solver) {
+  if (is_certain(arguments, largest, make_solver)) return largest;
+  double certain = 0, uncertain = largest;
   for (int i = 0; i < kBisections && !interrupted(); ++i) {
     const double middle = (certain + uncertain) / 2;
-    (is_certain(arguments, capture.parameter, middle, make_solver) ? certain : uncertain) = middle;
+    (is_certain(arguments, middle, make_solver) ? certain : uncertain) = middle;
   }
   return certain;
 }
@@ -62,6 +60,7 @@ std::string text_of(double value, double scale, const char* unit) {
 int run_margins(const Arguments& given, const SolverFactory& make_solver) {
   Arguments arguments = given;
   if (arguments.samples < 1) arguments.samples = kSamples;
+  arguments.baselines = false;
   const std::string& scene = arguments.names.front();
   const ControlTask task = make_task(scene, arguments.set);
   if (task.modes.empty()) throw std::invalid_argument(scene + ": has no modes whose margins could be told");
@@ -84,11 +83,11 @@ int run_margins(const Arguments& given, const SolverFactory& make_solver) {
   Json result = Json::object().set("schema", 1).set("scene", scene).set("modes", modes);
   std::string text = table.text();
   if (task.capture) {
-    const double offset = certain_offset(arguments, *task.capture, make_solver);
+    const auto& [quantity, largest, plant] = *task.capture;
+    const double amount = largest_certain(arguments, largest, make_solver);
     if (interrupted()) return kInterrupted;
-    result.set("capture", Json::object().set("parameter", task.capture->parameter).set("certain_to", offset).set("worlds", arguments.samples));
-    text += fmt::format("{} up to {:.4g} to either side: all of {} worlds succeed{}\n", task.capture->parameter, offset, arguments.samples,
-                        offset == task.capture->largest ? ", as far as was looked" : "");
+    result.set("capture", Json::object().set("quantity", quantity).set("certain_to", amount).set("looked_to", largest).set("worlds", arguments.samples));
+    text += fmt::format("{}: up to {:.4g} to either side all of {} worlds succeed (looked for up to {:.4g})\n", quantity, amount, arguments.samples, largest);
   }
   if (arguments.json)
     print(result);

@@ -4,6 +4,7 @@
 #include "tenon/problems/peg_in_hole/baselines.hpp"
 #include "tenon/problems/peg_in_hole/channels.hpp"
 #include "tenon/problems/peg_in_hole/hole_estimator.hpp"
+#include "tenon/problems/peg_in_hole/modes.hpp"
 #include "tenon/problems/peg_in_hole/plant.hpp"
 #include "tenon/problems/peg_in_hole/scenery.hpp"
 #include "tenon/problems/task_keys.hpp"
@@ -14,7 +15,8 @@ namespace {
 
 using toml_file::Table;
 
-constexpr double kMillimetre = 1e-3;  // m
+constexpr double kMillimetre = 1e-3;   // m
+constexpr double kInnerPeriod = 1e-3;  // s, of the impedance loop
 
 World read_world(const Table& root, const Table& parameters) {
   World world;
@@ -88,6 +90,13 @@ ControlTask make_task(const toml_file::Document& document) {
   task.baselines.push_back({"straight", std::make_unique<StraightDown>(world.geometry, problem.impedance, world.start, problem.depth, task.period)});
   task.baselines.push_back({"soft", std::make_unique<StraightDown>(world.geometry, soft, world.start, problem.depth, task.period)});
   task.baselines.push_back({"tilt", std::make_unique<TiltAndSlide>(world.geometry, problem.impedance, world.start, problem.depth, task.period)});
+  task.modes = linear_modes(world, problem.impedance, kInnerPeriod, 0);
+  task.capture = {"offset of the hole, m", kMillimetre * 5, [world](double offset) {
+                    World beside = world;
+                    beside.prior.middle[0] += offset / kMillimetre;
+                    beside.prior.half_width[0] = 0;
+                    return std::make_unique<PegPlant>(beside);
+                  }};
   task.scenery = scenery_of(world.geometry);
   return task;
 }
