@@ -54,8 +54,8 @@ void SceneDae::initial_state(DaeState& state) const {
   state.x.segment<9>(9) = v_;
   if (object_ >= 0) state.x[object_] = scene_.object.position;
   if (tool_ >= 0) state.x.segment<3>(tool_) = scene_.tool_angle;
-  state.mode.discrete.assign(static_cast<std::size_t>(num_contacts() + 1), 0);  // contacts, then the ticks so far
-  if (is_sampled()) state.mode.held = Vector::Zero(3 + ControllerState::kSize + 1 + 3 * scene_.delay);
+  state.mode.discrete.assign(static_cast<std::size_t>(num_contacts()), 0);
+  if (is_sampled()) state.mode.held = Vector::Zero(3 + ControllerState::kSize + 2 + 3 * scene_.delay);
   state.x[work_] = energy(state);
 }
 

@@ -11,9 +11,10 @@ namespace tenon::delta {
 namespace {
 
 constexpr int kFree = 0, kTouching = 2;
-constexpr int kHeldState = 3;  // in mode.held: torque, the controller's state, whether it saturates, torques on their way
+constexpr int kHeldState = 3;  // in mode.held: torque, the controller's state, whether it saturates, ticks so far, torques on their way
 constexpr int kHeldSaturated = kHeldState + ControllerState::kSize;
-constexpr int kHeldQueue = kHeldSaturated + 1;
+constexpr int kHeldTicks = kHeldSaturated + 1;
+constexpr int kHeldQueue = kHeldTicks + 1;
 
 double quantised(double angle, int bits) {
   if (bits == 0) return angle;
@@ -49,7 +50,7 @@ void SceneDae::guards(const DaeMode& mode, const DaePoint& at, Workspace&, Vecto
 
 double SceneDae::next_event_time(const DaeState& state) const {
   if (!is_sampled()) return std::numeric_limits<double>::infinity();
-  return state.mode.discrete.back() * controller_options_.period;
+  return state.mode.held[kHeldTicks] * controller_options_.period;
 }
 
 bool SceneDae::switch_contact(DaeState& state, int i, bool has_fired, const EventLog& log) const {
@@ -111,13 +112,13 @@ Transition SceneDae::transition(DaeState& state, std::span<const int> fired, Wor
   Transition out;
   for (int i = 0; i < num_contacts(); ++i) out.changed |= switch_contact(state, i, std::ranges::find(fired, i) != fired.end(), log);
   if (!out.changed && is_sampled() && state.t >= next_event_time(state) - 1e-9 * controller_options_.period) {
-    if (state.mode.discrete.back() == 0 && scene_.delay > 0) {  // what holds the weight is on its way from before
+    if (state.mode.held[kHeldTicks] == 0 && scene_.delay > 0) {  // what holds the weight is on its way from before
       const Configuration at(Vector9(state.x.head<9>()));
       const Vector3 holding = gravity_torque(law_.constants(), at, Motion(scene_.robot, at));
       state.mode.held.tail(3 * scene_.delay) = holding.replicate(scene_.delay, 1);
     }
     tick(state, static_cast<Memory&>(*workspace).controller);
-    ++state.mode.discrete.back();
+    ++state.mode.held[kHeldTicks];
     out.changed = true;
   }
   return out;
