@@ -302,10 +302,18 @@ TEST(DeltaScenes, ImpedanceControlKeepsTheForceOfAnImpactDown) {
 }
 
 TEST(DeltaScenes, TheGimbalsTurnTheToolToItsReference) {
-  const Record turned = record("delta-step", {"tool.angle=[0,0,0]", "tool.reference=[0.5,-0.3,1]"});
-  EXPECT_NEAR(turned["yaw"].back(), 0.5, 1e-9);
-  EXPECT_NEAR(turned["pitch"].back(), -0.3, 1e-9);
-  EXPECT_NEAR(turned["roll"].back(), 1, 1e-9);
+  const Overrides sampled{"controller.mode=sampled", "controller.rate=1000", "controller.delay=1", "controller.filter=200"};
+  for (Overrides overrides : {Overrides{}, sampled}) {
+    for (const char* text : {"tool.angle=[0,0,0]", "tool.reference=[0.5,-0.3,1]", "simulation.duration=3"}) overrides.emplace_back(text);
+    const Record turned = record("delta-step", overrides);
+    EXPECT_NEAR(turned["yaw"].back(), 0.5, 1e-9);
+    EXPECT_NEAR(turned["pitch"].back(), -0.3, 1e-9);
+    EXPECT_NEAR(turned["roll"].back(), 1, 1e-9);
+    EXPECT_LE(turned.largest_error(2.9), 1e-5);
+  }
+  // as a spring and a damper
+  const Record soft = record("delta-wall", {"tool.angle=[0.2,0,0]", "tool.reference=[0.5,-0.3,1]"});
+  EXPECT_NEAR(soft["roll"].back(), 1, 1e-6);
 }
 
 TEST(DeltaScenes, RefuseWhatMakesNoSense) {

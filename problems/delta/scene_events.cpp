@@ -11,7 +11,9 @@ namespace tenon::delta {
 namespace {
 
 constexpr int kFree = 0, kTouching = 2;
-constexpr int kHeldState = 3;  // in mode.held: torque, the controller's state, whether it saturates, ticks so far, torques on their way
+constexpr int kTorques = 6;  // of the arms' motors, then of the gimbals
+constexpr int kHeldState =
+    kTorques;  // in mode.held: torques, the controller's state, whether it saturates, ticks so far, torques on the way
 constexpr int kHeldSaturated = kHeldState + ControllerState::kSize;
 constexpr int kHeldTicks = kHeldSaturated + 1;
 constexpr int kHeldQueue = kHeldTicks + 1;
@@ -23,6 +25,10 @@ double quantised(double angle, int bits) {
 }
 
 }  // namespace
+
+int SceneDae::num_held() const {
+  return kHeldQueue + kTorques * scene_.delay;
+}
 
 /// The controller between two calls; what it remembers comes from the mode.
 struct SceneDae::Memory final : Dae::Scratch {
@@ -84,6 +90,10 @@ Measurement SceneDae::measure(const DaeState& state) const {
     m.angle[i] = quantised(state.x[3 * i], scene_.encoder_bits);
     m.rate[i] = state.x[9 + 3 * i];
   }
+  if (tool_ >= 0) {
+    for (int i = 0; i < 3; ++i) m.gimbal_angle[i] = quantised(state.x[tool_ + i], scene_.encoder_bits);
+    m.gimbal_rate = state.x.segment<3>(tool_ + 3);
+  }
   for (int i = 0; i < num_contacts(); ++i) {
     if (contact(i).sensor > 0) m.tactile_left += state.y[kContact + i];
     if (contact(i).sensor < 0) m.tactile_right += state.y[kContact + i];
@@ -95,16 +105,19 @@ void SceneDae::tick(DaeState& state, Controller& controller) const {
   Vector& held = state.mode.held;
   controller.reset(ControllerState::read(held.segment<ControllerState::kSize>(kHeldState)));
   controller.set_reference(scene_.reference.at(state.t));
+  controller.set_tool_reference(scene_.tool_reference);
   const Command& command = controller.tick(measure(state));
   controller.state().write(held.segment<ControllerState::kSize>(kHeldState));
   held[kHeldSaturated] = command.saturated;
-  const int waiting = 3 * scene_.delay;
+  Vector6 torques;
+  torques << command.torque, command.gimbal_torque;
+  const int waiting = kTorques * scene_.delay;
   if (waiting == 0) {
-    held.head<3>() = command.torque;
+    held.head<kTorques>() = torques;
   } else {
-    held.head<3>() = held.segment<3>(kHeldQueue);
-    std::copy(held.data() + kHeldQueue + 3, held.data() + kHeldQueue + waiting, held.data() + kHeldQueue);
-    held.segment<3>(kHeldQueue + waiting - 3) = command.torque;
+    held.head<kTorques>() = held.segment<kTorques>(kHeldQueue);
+    std::copy(held.data() + kHeldQueue + kTorques, held.data() + kHeldQueue + waiting, held.data() + kHeldQueue);
+    held.segment<kTorques>(kHeldQueue + waiting - kTorques) = torques;
   }
 }
 
@@ -114,8 +127,9 @@ Transition SceneDae::transition(DaeState& state, std::span<const int> fired, Wor
   if (!out.changed && is_sampled() && state.t >= next_event_time(state) - 1e-9 * controller_options_.period) {
     if (state.mode.held[kHeldTicks] == 0 && scene_.delay > 0) {  // what holds the weight is on its way from before
       const Configuration at(Vector9(state.x.head<9>()));
-      const Vector3 holding = gravity_torque(law_.constants(), at, Motion(scene_.robot, at));
-      state.mode.held.tail(3 * scene_.delay) = holding.replicate(scene_.delay, 1);
+      Vector6 holding = Vector6::Zero();
+      holding.head<3>() = gravity_torque(law_.constants(), at, Motion(scene_.robot, at));
+      state.mode.held.tail(kTorques * scene_.delay) = holding.replicate(scene_.delay, 1);
     }
     tick(state, static_cast<Memory&>(*workspace).controller);
     ++state.mode.held[kHeldTicks];
