@@ -158,7 +158,7 @@ double SceneDae::energy(const DaeState& state) const {
 // --- the record ------------------------------------------------------------------------------------------------------------------------
 
 int SceneDae::num_outputs() const {
-  return 6 + 2 * num_contacts() + (is_sampled() ? 2 : 0) + 5;
+  return 7 + 2 * num_contacts() + (is_sampled() ? 2 : 0) + 5;
 }
 
 void SceneDae::outputs(const DaeState& state, Workspace&, VectorRef values) const {
@@ -172,6 +172,7 @@ void SceneDae::outputs(const DaeState& state, Workspace&, VectorRef values) cons
   reference.position += shift * controller_options_.tactile_axis;
   for (int i = 0; i < 3; ++i) add(wrist[i]);
   for (int i = 0; i < 3; ++i) add(reference.position[i]);
+  add((reference.position - wrist).norm());
   for (int i = 0; i < num_contacts(); ++i) add(touch(i, state.mode, state.t, state.x, wrist, Vector3::Zero()).gap);
   for (int i = 0; i < num_contacts(); ++i) add(state.mode.discrete[static_cast<std::size_t>(i)]);
   if (is_sampled()) {
@@ -187,9 +188,9 @@ void SceneDae::outputs(const DaeState& state, Workspace&, VectorRef values) cons
 }
 
 std::string SceneDae::output_name(int i) const {
-  static const char* const axes[] = {"zx", "zy", "zz", "rx", "ry", "rz"};
-  if (i < 6) return axes[i];
-  i -= 6;
+  static const char* const position[] = {"zx", "zy", "zz", "rx", "ry", "rz", "tracking_error"};
+  if (i < 7) return position[i];
+  i -= 7;
   const int n = num_contacts();
   if (i < n) return "gap_" + contact(i).name;
   if (i < 2 * n) return "mode_" + contact(i - n).name;
