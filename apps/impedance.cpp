@@ -54,7 +54,7 @@ std::vector<double> sweep(const Scene& scene) {
   options.rtol = scene.rtol;
   options.atol = 1e-2 * scene.rtol;
   DaeState state = initial_state_of(dae);
-  const auto integrator = make_integrator("dop853", dae, options);
+  const auto integrator = make_integrator("dopri5", dae, options);
   for (long k = 0; k * kSample < kSweep; ++k) {
     const IntegrationResult result = integrator->advance(state, static_cast<double>(k) * kSample);
     if (result.status != IntegrationStatus::reached) throw std::runtime_error("the sweep ends early: " + result.explanation);

@@ -40,6 +40,7 @@ Simulation open_delta(const std::string& name_or_path, const std::vector<std::st
   out.settings.output_step = scene.output_step;
   out.settings.rtol = scene.rtol;
   out.settings.atol = 1e-2 * scene.rtol;
+  if (scene.control == delta::ControlMode::sampled) out.settings.integrator = "dopri5";  // its clock is what keeps steps short
   out.scenery = delta::scene_scenery(scene);
   out.dae = std::make_unique<delta::SceneDae>(std::move(scene));
   return out;

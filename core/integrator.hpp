@@ -23,7 +23,8 @@ struct IntegratorOptions {
   long max_steps = 100'000'000;
   int max_events_at_once = 1000;  // transitions without time going on, before the run is given up
 
-  /// A consistent state: at the start, at every output step, before and after every event, and at the end. Return false to stop there.
+  /// A consistent state: at the start, at every output step (after what a clock does there), and on either side of an event that resets x
+  /// or changes the discrete mode. Return false to stop there.
   std::function<bool(const DaeState&)> on_output = nullptr;
   Dae::EventLog on_event = nullptr;
 };

@@ -220,6 +220,29 @@ TEST(DeltaController, RefusesWhatMakesNoSense) {
   EXPECT_MESSAGE(Controller(robot, with([](auto& o) { o.integral_limit = -1; })), std::invalid_argument, "integral_limit");
 }
 
+TEST(DeltaController, TheGimbalsAreLinearisedOrHeldByASpringWithinTheirLimit) {
+  Bench bench;
+  Measurement m = bench.at({0, 0, 0.4});
+  m.gimbal_angle = {0.1, 0.2, -0.1};
+  m.gimbal_rate = {1, -1, 0.5};
+  const Vector3 target(0.2, 0.1, 0);
+  bench.options.law.tool_pole = 10;
+  Controller linearising(bench.robot, bench.options);
+  linearising.set_reference({{0, 0, 0.4}, {0, 0, 0}, {0, 0, 0}});
+  linearising.set_tool_reference(target);
+  const Vector3 w = 100 * (target - m.gimbal_angle) - 20 * m.gimbal_rate;
+  const WristGimbals gimbals{bench.robot.gimbal_inertia};
+  EXPECT_LE((gimbals.acceleration(m.gimbal_angle, m.gimbal_rate, linearising.tick(m).gimbal_torque) - w).norm(), 1e-9);
+
+  bench.options.law.form = LawForm::impedance;
+  bench.options.law.tool_stiffness = {1, 2, 3};
+  bench.options.law.tool_damping = {0.01, 0.02, 0.03};
+  Controller soft(bench.robot, bench.options);
+  soft.set_reference({{0, 0, 0.4}, {0, 0, 0}, {0, 0, 0}});
+  soft.set_tool_reference(target);
+  EXPECT_LE((soft.tick(m).gimbal_torque - Vector3(0.09, -0.18, 0.2)).norm(), 1e-12);  // the last one cut from 0.285
+}
+
 TEST(WristGimbals, CoriolisTorquesTakeTheWorkOfTheChangingInertia) {
   const WristGimbals gimbals{{1e-4, 2e-4, 3e-4}};
   const Vector3 angle(0.3, 0.7, -0.4), rate(1, -2, 3);

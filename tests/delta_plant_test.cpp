@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tenon/problems/delta/controller.hpp"
 #include "tenon/problems/delta/plant.hpp"
 #include "tenon/problems/delta/scene_dae.hpp"
 #include "tenon/solvers/make_integrator.hpp"
@@ -189,6 +190,29 @@ TEST(DeltaPlant, TorquesTakeTheirWorkAndFrictionGivesNoneBack) {
     work += 0.5e-4 * (begin + power());  // the trapezoidal rule's error is 1e-8 of the work
     EXPECT_NEAR(plant.energy(), work, 1e-8);
   }
+}
+
+TEST(DeltaPlant, TheControllerOfTheSimulatorPressesItsToolOnAStiffWall) {
+  ControllerOptions options;
+  options.law.form = LawForm::impedance;
+  options.law.stiffness = {500, 500, 500};
+  options.law.impedance_damping = {40, 40, 40};
+  options.law.tool_stiffness = {2, 2, 2};  // N m/rad: the push on a tool of 40 mm tilts it with 0.2
+  options.law.tool_damping = {0.02, 0.02, 0.02};
+  Controller controller(load_robot("delta"), options);
+  Plant plant(load_robot("delta"), {.tool = {0, 0, 0.04}});
+  ASSERT_TRUE(plant.place({0, 0, 0.4}, {0, 0.05, 0}));
+  constexpr double kWall = 0.445, kStiffness = 2e5;  // m, N/m
+  const auto wall = [](const ToolMotion& tool) { return Wrench{{0, 0, -kStiffness * std::max(0.0, tool.position[2] - kWall)}, {0, 0, 0}}; };
+  controller.set_reference({{0, 0, 0.415}, {0, 0, 0}, {0, 0, 0}});  // 10 mm inside
+  for (int k = 0; k < 2000; ++k) {
+    const Command& command = controller.tick(
+        {.angle = plant.motors(), .rate = plant.motor_rates(), .gimbal_angle = plant.gimbals(), .gimbal_rate = plant.gimbal_rates()});
+    ASSERT_TRUE(plant.step(command.torque, command.gimbal_torque, wall));
+  }
+  EXPECT_NEAR(-wall(plant.tool()).force[2], 500 * 0.010 / (1 + 500 / kStiffness), 1e-3);
+  EXPECT_LE(plant.gimbals().norm(), 1e-3);
+  EXPECT_LE(plant.velocity().norm(), 1e-6);
 }
 
 TEST(DeltaPlant, TorquesAreCutToTheRobotsLimits) {

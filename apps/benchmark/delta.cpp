@@ -1,4 +1,4 @@
-// The delta robot: one control tick, one right-hand side of its DAE, and a simulated second of its loop at 1 kHz.
+// The delta robot: one control tick, one right-hand side of its DAE, a tick of it as a plant, and its loop at 1 kHz in the simulator.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 #include "tenon/apps/benchmark/benchmark.hpp"
 #include "tenon/apps/statistics.hpp"
 #include "tenon/problems/delta/controller.hpp"
+#include "tenon/problems/delta/plant.hpp"
 #include "tenon/problems/delta/robot_file.hpp"
 #include "tenon/problems/delta/scene_dae.hpp"
 #include "tenon/problems/delta/scene_file.hpp"
@@ -64,17 +65,27 @@ void run_dae(BenchmarkRun& out) {
   if (!std::isfinite(sum)) out.notes.emplace_back("not finite");
 }
 
-/// A second of delta-joystick, which is sampled at 1 kHz.
+/// A millisecond of robot and gimbals under held torques, the tool on a stiff wall.
+void run_plant(BenchmarkRun& out) {
+  Plant plant(load_robot("delta"), {.tool = {0, 0, 0.04}});
+  plant.place({0, 0, 0.4}, {0, 0, 0});
+  const auto wall = [](const ToolMotion& tool) { return Wrench{{0, 0, -2e5 * std::max(0.0, tool.position[2] - 0.44)}, {0, 0, 0}}; };
+  time_each(kRuns / 10, out, [&](int) { plant.step({-0.3, -0.3, -0.3}, {0, 0, 0}, wall); });
+  out.notes.push_back(fmt::format("{:.0f} times real time, micro-steps of {:g} us", plant.options().period / median(out.seconds),
+                                  1e6 * plant.options().micro_step));
+}
+
+/// delta-joystick, which is sampled at 1 kHz, ten ticks at a time.
 void run_loop(const std::string& integrator, BenchmarkRun& out) {
-  constexpr int kSeconds = 8;
+  constexpr double kPiece = 0.01;  // s
   const SceneDae dae(load_scene("delta-joystick"));
   IntegratorOptions options;
   options.rtol = 1e-6;
   options.atol = 1e-8;
   const auto flow = make_integrator(integrator, dae, options);
   DaeState state = initial_state_of(dae);
-  time_each(kSeconds, out, [&](int k) { flow->advance(state, k + 1); });
-  out.notes.push_back(fmt::format("{:.0f} times real time, rtol {:g}", 1 / median(out.seconds), options.rtol));
+  time_each(static_cast<int>(dae.scene().duration / kPiece), out, [&](int k) { flow->advance(state, (k + 1) * kPiece); });
+  out.notes.push_back(fmt::format("{:.0f} times real time, rtol {:g}", kPiece / median(out.seconds), options.rtol));
 }
 
 }  // namespace
@@ -82,7 +93,9 @@ void run_loop(const std::string& integrator, BenchmarkRun& out) {
 void add_delta(std::vector<Benchmark>& rows) {
   rows.push_back({"delta/tick", &run_tick});
   rows.push_back({"delta/dae", &run_dae});
-  rows.push_back({"delta/loop", [](BenchmarkRun& out) { run_loop("dop853", out); }});
+  rows.push_back({"delta/plant", &run_plant});
+  rows.push_back({"delta/loop", [](BenchmarkRun& out) { run_loop("dopri5", out); }});
+  rows.push_back({"delta/loop/dop853", [](BenchmarkRun& out) { run_loop("dop853", out); }});
   const std::vector<IntegratorDescription> integrators = list_integrators();
   if (std::ranges::any_of(integrators, [](const auto& i) { return i.name == "ida" && i.available; })) {
     rows.push_back({"delta/loop/ida", [](BenchmarkRun& out) { run_loop("ida", out); }});

@@ -26,7 +26,7 @@ constexpr int kSamples = 8;  // where --samples does not say
 /// Whether all worlds with so much of it, to either side, are a success.
 bool is_certain(const Arguments& arguments, double amount, const SolverFactory& make_solver) {
   std::vector<std::uint64_t> seeds(static_cast<std::size_t>(arguments.samples));
-  std::iota(seeds.begin(), seeds.end(), arguments.seed);
+  std::iota(seeds.begin(), seeds.end(), arguments.seed.value_or(1));
   bool certain = true;
   for (const double signed_amount : {amount, -amount}) {
     const ExperimentFactory make_experiment =

@@ -38,7 +38,7 @@ std::string identity(const Arguments& arguments) {
 std::vector<std::uint64_t> missing_seeds(const Arguments& arguments, const std::map<std::uint64_t, Vector>& rows) {
   std::vector<std::uint64_t> seeds;
   for (int k = 0; k < arguments.samples; ++k) {
-    const std::uint64_t seed = arguments.seed + static_cast<std::uint64_t>(k);
+    const std::uint64_t seed = arguments.seed.value_or(1) + static_cast<std::uint64_t>(k);
     if (!rows.contains(seed)) seeds.push_back(seed);
   }
   return seeds;

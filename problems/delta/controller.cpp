@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 namespace tenon::delta {
 
@@ -25,6 +26,7 @@ void validate(const ControllerOptions& options) {
   require(options.integral_limit >= 0, "integral_limit", options.integral_limit, "0 or more");
   require(options.filter_frequency >= 0 && options.filter_frequency * options.period < 0.5, "filter_frequency", options.filter_frequency,
           "0, or less than half of 1/period");
+  require(options.law.tool_pole > 0, "tool_pole", options.law.tool_pole, "more than 0");
   require(options.tactile_limit >= 0, "tactile_limit", options.tactile_limit, "0 or more");
   require(std::abs(options.tactile_axis.norm() - 1) < 1e-9, "the length of tactile_axis", options.tactile_axis.norm(), "1");
   require(std::isfinite(options.tactile_gain), "tactile_gain", options.tactile_gain, "a finite number");
@@ -33,24 +35,39 @@ void validate(const ControllerOptions& options) {
 Controller::Controller(const Robot& robot, const ControllerOptions& options)
     : law_(robot, validated(options).law), options_(options), filter_(options.filter_frequency, options.period) {}
 
+namespace {
+
+/// Calls `field` with every number of a state (a Vector3 or a double) and its place in the vector of them all.
+template <class State, class Field>
+void for_each_field(State& state, const Field& field) {
+  field(0, state.integral), field(3, state.holding);
+  int k = 6;
+  for (auto* angles : {&state.arms, &state.gimbals}) {
+    field(k, angles->previous), field(k + 3, angles->filter.s1), field(k + 6, angles->filter.s2), field(k + 9, angles->has_previous);
+    k += 10;
+  }
+  field(k, state.shift);
+}
+
+}  // namespace
+
 void ControllerState::write(Eigen::Ref<Vector> numbers) const {
-  numbers.segment<3>(0) = integral;
-  numbers.segment<3>(3) = previous_angle;
-  numbers.segment<3>(6) = holding;
-  numbers.segment<3>(9) = filter.s1;
-  numbers.segment<3>(12) = filter.s2;
-  numbers[15] = shift;
-  numbers[16] = has_previous;
+  for_each_field(*this, [&](int k, const auto& value) {
+    if constexpr (requires { value.size(); })
+      numbers.segment<3>(k) = value;
+    else
+      numbers[k] = value;
+  });
 }
 
 ControllerState ControllerState::read(const Eigen::Ref<const Vector>& numbers) {
   ControllerState state;
-  state.integral = numbers.segment<3>(0);
-  state.previous_angle = numbers.segment<3>(3);
-  state.holding = numbers.segment<3>(6);
-  state.filter = {numbers.segment<3>(9), numbers.segment<3>(12)};
-  state.shift = numbers[15];
-  state.has_previous = numbers[16] != 0;
+  for_each_field(state, [&](int k, auto& value) {
+    if constexpr (requires { value.size(); })
+      value = numbers.segment<3>(k);
+    else
+      value = static_cast<std::remove_reference_t<decltype(value)>>(numbers[k]);
+  });
   return state;
 }
 
@@ -61,7 +78,8 @@ Reference Controller::reference() const {
 }
 
 const Command& Controller::tick(const Measurement& measurement) {
-  const Sensed sensed(law_.robot(), measurement.angle, rate(measurement));
+  if (law_.has_gimbals()) turn_tool(measurement);
+  const Sensed sensed(law_.robot(), measurement.angle, rate(measurement.angle, measurement.rate, state_.arms));
   command_.singular = !sensed.ok;
   if (!sensed.ok) {
     limit(state_.holding);
@@ -79,12 +97,18 @@ const Command& Controller::tick(const Measurement& measurement) {
   return command_;
 }
 
-Vector3 Controller::rate(const Measurement& measurement) {
-  if (options_.filter_frequency == 0) return measurement.rate;
-  const Vector3 difference = state_.has_previous ? Vector3((measurement.angle - state_.previous_angle) / options_.period) : Vector3::Zero();
-  state_.previous_angle = measurement.angle;
-  state_.has_previous = true;
-  return filter_(difference, state_.filter);
+Vector3 Controller::rate(const Vector3& angle, const Vector3& measured, DifferenceState& state) const {
+  if (options_.filter_frequency == 0) return measured;
+  const Vector3 difference = state.has_previous ? Vector3((angle - state.previous) / options_.period) : Vector3::Zero();
+  state.previous = angle;
+  state.has_previous = true;
+  return filter_(difference, state.filter);
+}
+
+void Controller::turn_tool(const Measurement& measurement) {
+  const double most = law_.robot().gimbal_torque_limit;
+  const Vector3 angle_rate = rate(measurement.gimbal_angle, measurement.gimbal_rate, state_.gimbals);
+  command_.gimbal_torque = law_.tool_torque(measurement.gimbal_angle, angle_rate, tool_reference_).cwiseMax(-most).cwiseMin(most);
 }
 
 void Controller::limit(const Vector3& torque) {

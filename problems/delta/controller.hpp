@@ -30,26 +30,34 @@ struct Measurement {
   Vector3 angle{0, 0, 0};                      // y, rad
   Vector3 rate{0, 0, 0};                       // y', rad/s; not read where filter_frequency > 0
   double tactile_left = 0, tactile_right = 0;  // s_L, s_R, N
+  Vector3 gimbal_angle{0, 0, 0};               // rad; not read where the robot has no gimbals
+  Vector3 gimbal_rate{0, 0, 0};                // rad/s; as rate
 };
 
 struct Command {
-  Vector3 torque{0, 0, 0};  // N m, within the limit
-  bool saturated = false;   // a motor is at its limit
-  bool singular = false;    // too near a singularity: the torque is that which last held the weight
-  Vector3 wrist{0, 0, 0};   // z as measured
-  Vector3 error{0, 0, 0};   // r - z
+  Vector3 torque{0, 0, 0};         // N m, within the limit
+  Vector3 gimbal_torque{0, 0, 0};  // N m, within the limit
+  bool saturated = false;          // a motor of the arms is at its limit
+  bool singular = false;           // too near a singularity: the torque is that which last held the weight
+  Vector3 wrist{0, 0, 0};          // z as measured
+  Vector3 error{0, 0, 0};          // r - z
+};
+
+/// What is remembered of three angles to tell their rates.
+struct DifferenceState {
+  Vector3 previous{0, 0, 0};  // rad
+  LowPass::State filter;
+  bool has_previous = false;
 };
 
 /// What a controller remembers from tick to tick.
 struct ControllerState {
-  Vector3 integral{0, 0, 0};        // int(r - z), m s
-  Vector3 previous_angle{0, 0, 0};  // rad
-  Vector3 holding{0, 0, 0};         // the torque that last held the weight, N m
-  LowPass::State filter;
+  Vector3 integral{0, 0, 0};  // int(r - z), m s
+  Vector3 holding{0, 0, 0};   // the torque that last held the weight, N m
+  DifferenceState arms, gimbals;
   double shift = 0;  // of the reference by the tactile loop, m
-  bool has_previous = false;
 
-  static constexpr int kSize = 17;
+  static constexpr int kSize = 27;
   void write(Eigen::Ref<Vector> numbers) const;
   static ControllerState read(const Eigen::Ref<const Vector>& numbers);
 };
@@ -64,6 +72,8 @@ class Controller {
   const ControllerState& state() const { return state_; }
   /// Holds until the next call.
   void set_reference(const Reference& reference) { reference_ = reference; }
+  /// Of the gimbals, rad; holds until the next call.
+  void set_tool_reference(const Vector3& angle) { tool_reference_ = angle; }
 
   const Command& tick(const Measurement& measurement);
 
@@ -72,8 +82,9 @@ class Controller {
   const Law& law() const { return law_; }
 
  private:
-  Vector3 rate(const Measurement& measurement);
+  Vector3 rate(const Vector3& angle, const Vector3& measured, DifferenceState& state) const;
   void limit(const Vector3& torque);
+  void turn_tool(const Measurement& measurement);
   /// The tactile loop's integrator; returns the rate at which the reference moves along the axis, m/s.
   double move_reference(const Measurement& measurement);
   void integrate();
@@ -82,6 +93,7 @@ class Controller {
   ControllerOptions options_;
   LowPass filter_;
   Reference reference_;
+  Vector3 tool_reference_{0, 0, 0};
   ControllerState state_;
   Command command_;
 };

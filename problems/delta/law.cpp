@@ -35,6 +35,13 @@ LawTorque Law::torque(const Sensed& sensed, const Reference& reference, const Ve
   return out;
 }
 
+Vector3 Law::tool_torque(const Vector3& angle, const Vector3& rate, const Vector3& reference) const {
+  if (options_.form == LawForm::impedance)
+    return options_.tool_stiffness.cwiseProduct(reference - angle) - options_.tool_damping.cwiseProduct(rate);
+  const double p = options_.tool_pole;
+  return gimbals_.linearising_torque(angle, rate, p * p * (reference - angle) - 2 * p * rate);
+}
+
 Vector3 Law::linearising(const Sensed& sensed, const Reference& reference, const Vector3& integral) const {
   const Motion& motion = sensed.motion;
   const Vector9 v = motion.rates(sensed.y_rate);

@@ -3,11 +3,13 @@
 //     linearising   w = r'' + kd (r' - z') + kp (r - z) + ki int(r - z)                                          (delta.md, section 7)
 //                   u = M_y J_c^-1 (w - J_c' y') + Gamma' (C + D + M gbar) + tau_u
 //     impedance     u = tau_u + J_c' [ K (r - z) + D (r' - z') ]
+//     gimbals       linearised with both poles of each at -p, or a spring and a damper at each                   (section 10)
 //
 // A law has no state, so that it serves a controller's tick and a continuous simulation alike. Nothing here allocates or throws.
 #pragma once
 
 #include "tenon/problems/delta/dynamics.hpp"
+#include "tenon/problems/delta/wrist_gimbals.hpp"
 
 namespace tenon::delta {
 
@@ -36,11 +38,14 @@ struct LawOptions {
   LawForm form = LawForm::linearising;
   Gains gains = kDefaultGains;
   ReducedInertia inertia = ReducedInertia::exact;
-  bool feed_forward = true;               // r''
-  bool coriolis = true;                   // C, M gbar and J_c' y'
-  bool damping = true;                    // D
-  Vector3 stiffness{200, 200, 200};       // K, N/m; impedance only
-  Vector3 impedance_damping{20, 20, 20};  // D, N s/m; impedance only
+  bool feed_forward = true;                // r''
+  bool coriolis = true;                    // C, M gbar and J_c' y'
+  bool damping = true;                     // D
+  Vector3 stiffness{200, 200, 200};        // K, N/m; impedance only
+  Vector3 impedance_damping{20, 20, 20};   // D, N s/m; impedance only
+  double tool_pole = 20;                   // p of the gimbals, 1/s; linearising only
+  Vector3 tool_stiffness{0.2, 0.2, 0.2};   // N m/rad; impedance only
+  Vector3 tool_damping{0.01, 0.01, 0.01};  // N m s/rad; impedance only
 };
 
 /// Where the robot is, as a law needs it.
@@ -67,12 +72,16 @@ struct LawTorque {
 
 class Law {
  public:
-  Law(const Robot& robot, const LawOptions& options) : robot_(robot), constants_(robot), options_(options) {}
+  Law(const Robot& robot, const LawOptions& options)
+      : robot_(robot), constants_(robot), gimbals_{robot.gimbal_inertia}, options_(options) {}
 
   /// `integral` is int(r - z), m s. Without torque limits. Asks for sensed.ok.
   LawTorque torque(const Sensed& sensed, const Reference& reference, const Vector3& integral) const;
+  /// Of the gimbals, from their angles (rad), rates (rad/s) and where they should be. Without torque limits.
+  Vector3 tool_torque(const Vector3& angle, const Vector3& rate, const Vector3& reference) const;
 
   const Robot& robot() const { return robot_; }
+  bool has_gimbals() const { return gimbals_.are_there(); }
   const ArmConstants& constants() const { return constants_; }
   const LawOptions& options() const { return options_; }
 
@@ -82,6 +91,7 @@ class Law {
 
   Robot robot_;
   ArmConstants constants_;
+  WristGimbals gimbals_;
   LawOptions options_;
 };
 

@@ -37,7 +37,7 @@ Plant::Plant(const Robot& robot, const PlantOptions& options)
       options_(validated(options)),
       micro_steps_(static_cast<int>(std::ceil(options.period / options.micro_step * (1 - 1e-12)))),
       micro_step_(options.period / micro_steps_),
-      has_gimbals_((robot.gimbal_inertia.array() > 0).all()) {}
+      has_gimbals_(gimbals_.are_there()) {}
 
 bool Plant::place(const Vector3& wrist, const Vector3& gimbals, const Vector3& velocity, const Vector3& gimbal_rates) {
   State start;

@@ -9,8 +9,6 @@ namespace tenon::delta {
 
 namespace {
 
-constexpr double kToolPole = 20;  // 1/s, both poles of the gimbals' own loop
-
 Robot with_payload(Robot robot, double payload) {
   robot.payload = payload;
   return robot;
@@ -54,8 +52,8 @@ void SceneDae::initial_state(DaeState& state) const {
   state.x.segment<9>(9) = v_;
   if (object_ >= 0) state.x[object_] = scene_.object.position;
   if (tool_ >= 0) state.x.segment<3>(tool_) = scene_.tool_angle;
-  state.mode.discrete.assign(static_cast<std::size_t>(num_contacts() + 1), 0);  // contacts, then the ticks so far
-  if (is_sampled()) state.mode.held = Vector::Zero(3 + ControllerState::kSize + 1 + 3 * scene_.delay);
+  state.mode.discrete.assign(static_cast<std::size_t>(num_contacts()), 0);
+  if (is_sampled()) state.mode.held = Vector::Zero(num_held());
   state.x[work_] = energy(state);
 }
 
@@ -99,15 +97,14 @@ Vector3 SceneDae::integral_rate(double t, ConstVectorRef x, const Vector3& wrist
   return rate;
 }
 
-Vector3 SceneDae::tool_torque(ConstVectorRef x) const {
-  const Vector3 angle = x.segment<3>(tool_), rate = x.segment<3>(tool_ + 3);
-  const Vector3 w = kToolPole * kToolPole * (scene_.tool_reference - angle) - 2 * kToolPole * rate;
+Vector3 SceneDae::tool_torque(const DaeMode& mode, ConstVectorRef x) const {
+  if (is_sampled()) return mode.held.segment<3>(3);
   const double most = scene_.robot.gimbal_torque_limit;
-  return gimbals_.linearising_torque(angle, rate, w).cwiseMax(-most).cwiseMin(most);
+  return law_.tool_torque(x.segment<3>(tool_), x.segment<3>(tool_ + 3), scene_.tool_reference).cwiseMax(-most).cwiseMin(most);
 }
 
-Vector3 SceneDae::tool_acceleration(ConstVectorRef x) const {
-  return gimbals_.acceleration(x.segment<3>(tool_), x.segment<3>(tool_ + 3), tool_torque(x));
+Vector3 SceneDae::tool_acceleration(const DaeMode& mode, ConstVectorRef x) const {
+  return gimbals_.acceleration(x.segment<3>(tool_), x.segment<3>(tool_ + 3), tool_torque(mode, x));
 }
 
 /// Of all that changes the energy: motors, friction, pushes, the contacts' dampers, the gripper.
@@ -125,7 +122,7 @@ double SceneDae::power(const DaeMode& mode, const DaePoint& at, const Vector3& w
     sum -= contact(i).damping * now.rate * now.rate + at.y[kContact + i] * now.opening_rate;
   }
   if (object_ >= 0) sum -= scene_.object.damping * at.x[object_ + 1] * at.x[object_ + 1];
-  if (tool_ >= 0) sum += tool_torque(at.x).dot(at.x.segment<3>(tool_ + 3));
+  if (tool_ >= 0) sum += tool_torque(mode, at.x).dot(at.x.segment<3>(tool_ + 3));
   return sum;
 }
 
@@ -178,7 +175,7 @@ void SceneDae::residual(const DaeMode& mode, const DaePoint& at, Workspace&, Vec
   }
   if (tool_ >= 0) {
     F.segment<3>(tool_) = at.xdot.segment<3>(tool_) - at.x.segment<3>(tool_ + 3);
-    F.segment<3>(tool_ + 3) = at.xdot.segment<3>(tool_ + 3) - tool_acceleration(at.x);
+    F.segment<3>(tool_ + 3) = at.xdot.segment<3>(tool_ + 3) - tool_acceleration(mode, at.x);
   }
 }
 
@@ -213,7 +210,7 @@ void SceneDae::derivatives(const DaeMode& mode, double t, ConstVectorRef x, Cons
   }
   if (tool_ >= 0) {
     xdot.segment<3>(tool_) = x.segment<3>(tool_ + 3);
-    xdot.segment<3>(tool_ + 3) = tool_acceleration(x);
+    xdot.segment<3>(tool_ + 3) = tool_acceleration(mode, x);
   }
 }
 

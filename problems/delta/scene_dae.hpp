@@ -66,6 +66,7 @@ class SceneDae final : public Dae {
   };
   struct Memory;
 
+  int num_held() const;  // reals of the mode, where the controller is sampled
   int num_contacts() const { return static_cast<int>(scene_.contacts.size()); }
   const Contact& contact(int i) const { return scene_.contacts[static_cast<std::size_t>(i)]; }
   bool is_continuous() const { return scene_.control == ControlMode::continuous; }
@@ -76,8 +77,8 @@ class SceneDae final : public Dae {
   Touch touch(int i, const DaeMode& mode, double t, ConstVectorRef x, const Vector3& wrist, const Vector3& velocity) const;
   Vector3 torque(const DaeMode& mode, double t, ConstVectorRef x, const Configuration& at) const;
   Vector3 integral_rate(double t, ConstVectorRef x, const Vector3& wrist) const;
-  Vector3 tool_torque(ConstVectorRef x) const;
-  Vector3 tool_acceleration(ConstVectorRef x) const;
+  Vector3 tool_torque(const DaeMode& mode, ConstVectorRef x) const;
+  Vector3 tool_acceleration(const DaeMode& mode, ConstVectorRef x) const;
   double object_force(double t, ConstVectorRef x) const;
   double power(const DaeMode& mode, const DaePoint& at, const Vector3& wrist, const Vector3& velocity) const;
   Measurement measure(const DaeState& state) const;

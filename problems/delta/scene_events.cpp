@@ -11,9 +11,12 @@ namespace tenon::delta {
 namespace {
 
 constexpr int kFree = 0, kTouching = 2;
-constexpr int kHeldState = 3;  // in mode.held: torque, the controller's state, whether it saturates, torques on their way
+constexpr int kTorques = 6;  // of the arms' motors, then of the gimbals
+constexpr int kHeldState =
+    kTorques;  // in mode.held: torques, the controller's state, whether it saturates, ticks so far, torques on the way
 constexpr int kHeldSaturated = kHeldState + ControllerState::kSize;
-constexpr int kHeldQueue = kHeldSaturated + 1;
+constexpr int kHeldTicks = kHeldSaturated + 1;
+constexpr int kHeldQueue = kHeldTicks + 1;
 
 double quantised(double angle, int bits) {
   if (bits == 0) return angle;
@@ -22,6 +25,10 @@ double quantised(double angle, int bits) {
 }
 
 }  // namespace
+
+int SceneDae::num_held() const {
+  return kHeldQueue + kTorques * scene_.delay;
+}
 
 /// The controller between two calls; what it remembers comes from the mode.
 struct SceneDae::Memory final : Dae::Scratch {
@@ -49,7 +56,7 @@ void SceneDae::guards(const DaeMode& mode, const DaePoint& at, Workspace&, Vecto
 
 double SceneDae::next_event_time(const DaeState& state) const {
   if (!is_sampled()) return std::numeric_limits<double>::infinity();
-  return state.mode.discrete.back() * controller_options_.period;
+  return state.mode.held[kHeldTicks] * controller_options_.period;
 }
 
 bool SceneDae::switch_contact(DaeState& state, int i, bool has_fired, const EventLog& log) const {
@@ -83,6 +90,10 @@ Measurement SceneDae::measure(const DaeState& state) const {
     m.angle[i] = quantised(state.x[3 * i], scene_.encoder_bits);
     m.rate[i] = state.x[9 + 3 * i];
   }
+  if (tool_ >= 0) {
+    for (int i = 0; i < 3; ++i) m.gimbal_angle[i] = quantised(state.x[tool_ + i], scene_.encoder_bits);
+    m.gimbal_rate = state.x.segment<3>(tool_ + 3);
+  }
   for (int i = 0; i < num_contacts(); ++i) {
     if (contact(i).sensor > 0) m.tactile_left += state.y[kContact + i];
     if (contact(i).sensor < 0) m.tactile_right += state.y[kContact + i];
@@ -94,16 +105,19 @@ void SceneDae::tick(DaeState& state, Controller& controller) const {
   Vector& held = state.mode.held;
   controller.reset(ControllerState::read(held.segment<ControllerState::kSize>(kHeldState)));
   controller.set_reference(scene_.reference.at(state.t));
+  controller.set_tool_reference(scene_.tool_reference);
   const Command& command = controller.tick(measure(state));
   controller.state().write(held.segment<ControllerState::kSize>(kHeldState));
   held[kHeldSaturated] = command.saturated;
-  const int waiting = 3 * scene_.delay;
+  Vector6 torques;
+  torques << command.torque, command.gimbal_torque;
+  const int waiting = kTorques * scene_.delay;
   if (waiting == 0) {
-    held.head<3>() = command.torque;
+    held.head<kTorques>() = torques;
   } else {
-    held.head<3>() = held.segment<3>(kHeldQueue);
-    std::copy(held.data() + kHeldQueue + 3, held.data() + kHeldQueue + waiting, held.data() + kHeldQueue);
-    held.segment<3>(kHeldQueue + waiting - 3) = command.torque;
+    held.head<kTorques>() = held.segment<kTorques>(kHeldQueue);
+    std::copy(held.data() + kHeldQueue + kTorques, held.data() + kHeldQueue + waiting, held.data() + kHeldQueue);
+    held.segment<kTorques>(kHeldQueue + waiting - kTorques) = torques;
   }
 }
 
@@ -111,13 +125,14 @@ Transition SceneDae::transition(DaeState& state, std::span<const int> fired, Wor
   Transition out;
   for (int i = 0; i < num_contacts(); ++i) out.changed |= switch_contact(state, i, std::ranges::find(fired, i) != fired.end(), log);
   if (!out.changed && is_sampled() && state.t >= next_event_time(state) - 1e-9 * controller_options_.period) {
-    if (state.mode.discrete.back() == 0 && scene_.delay > 0) {  // what holds the weight is on its way from before
+    if (state.mode.held[kHeldTicks] == 0 && scene_.delay > 0) {  // what holds the weight is on its way from before
       const Configuration at(Vector9(state.x.head<9>()));
-      const Vector3 holding = gravity_torque(law_.constants(), at, Motion(scene_.robot, at));
-      state.mode.held.tail(3 * scene_.delay) = holding.replicate(scene_.delay, 1);
+      Vector6 holding = Vector6::Zero();
+      holding.head<3>() = gravity_torque(law_.constants(), at, Motion(scene_.robot, at));
+      state.mode.held.tail(kTorques * scene_.delay) = holding.replicate(scene_.delay, 1);
     }
     tick(state, static_cast<Memory&>(*workspace).controller);
-    ++state.mode.discrete.back();
+    ++state.mode.held[kHeldTicks];
     out.changed = true;
   }
   return out;
@@ -143,7 +158,7 @@ double SceneDae::energy(const DaeState& state) const {
 // --- the record ------------------------------------------------------------------------------------------------------------------------
 
 int SceneDae::num_outputs() const {
-  return 6 + 2 * num_contacts() + (is_sampled() ? 2 : 0) + 5;
+  return 7 + 2 * num_contacts() + (is_sampled() ? 2 : 0) + 5;
 }
 
 void SceneDae::outputs(const DaeState& state, Workspace&, VectorRef values) const {
@@ -157,6 +172,7 @@ void SceneDae::outputs(const DaeState& state, Workspace&, VectorRef values) cons
   reference.position += shift * controller_options_.tactile_axis;
   for (int i = 0; i < 3; ++i) add(wrist[i]);
   for (int i = 0; i < 3; ++i) add(reference.position[i]);
+  add((reference.position - wrist).norm());
   for (int i = 0; i < num_contacts(); ++i) add(touch(i, state.mode, state.t, state.x, wrist, Vector3::Zero()).gap);
   for (int i = 0; i < num_contacts(); ++i) add(state.mode.discrete[static_cast<std::size_t>(i)]);
   if (is_sampled()) {
@@ -172,9 +188,9 @@ void SceneDae::outputs(const DaeState& state, Workspace&, VectorRef values) cons
 }
 
 std::string SceneDae::output_name(int i) const {
-  static const char* const axes[] = {"zx", "zy", "zz", "rx", "ry", "rz"};
-  if (i < 6) return axes[i];
-  i -= 6;
+  static const char* const position[] = {"zx", "zy", "zz", "rx", "ry", "rz", "tracking_error"};
+  if (i < 7) return position[i];
+  i -= 7;
   const int n = num_contacts();
   if (i < n) return "gap_" + contact(i).name;
   if (i < 2 * n) return "mode_" + contact(i - n).name;

@@ -45,6 +45,9 @@ const Words kControllerKeys{"mode",
                             "payload",
                             "stiffness",
                             "impedance_damping",
+                            "tool_pole",
+                            "tool_stiffness",
+                            "tool_damping",
                             "integral_limit",
                             "tactile_gain",
                             "tactile_limit",
@@ -158,6 +161,9 @@ void read_controller(const Table& root, Scene& scene) {
   law.damping = section.flag("damping", law.coriolis);
   law.stiffness = section.vector3("stiffness", law.stiffness);
   law.impedance_damping = section.vector3("impedance_damping", law.impedance_damping);
+  law.tool_pole = section.number("tool_pole", law.tool_pole);
+  law.tool_stiffness = section.vector3("tool_stiffness", law.tool_stiffness);
+  law.tool_damping = section.vector3("tool_damping", law.tool_damping);
   options.period = 1 / section.positive("rate", 1 / options.period);
   options.integral_limit = section.number("integral_limit", options.integral_limit);
   options.filter_frequency = section.number("filter", 0);

@@ -128,8 +128,8 @@ void SceneDae::jacobian(const DaeMode& mode, const DaePoint& at, double alpha, W
   if (tool_ >= 0) {
     J.block<3, 3>(tool_, tool_ + 3) = -Matrix3::Identity();
     for (int k = tool_; k < tool_ + 6; ++k) {
-      J.block<3, 1>(tool_ + 3, k) -= difference(k, [&] { return tool_acceleration(x); });
-      J(work_, k) -= difference(k, [&] { return Vector3(tool_torque(x).cwiseProduct(x.segment<3>(tool_ + 3))); }).sum();
+      J.block<3, 1>(tool_ + 3, k) -= difference(k, [&] { return tool_acceleration(mode, x); });
+      J(work_, k) -= difference(k, [&] { return Vector3(tool_torque(mode, x).cwiseProduct(x.segment<3>(tool_ + 3))); }).sum();
     }
   }
   if (is_continuous()) {

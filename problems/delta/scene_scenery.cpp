@@ -1,5 +1,6 @@
 #include "tenon/problems/delta/scene_scenery.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "tenon/problems/delta/configuration.hpp"
@@ -27,22 +28,74 @@ void add_arm(const Robot& robot, int i, Scenery& scenery) {
   }
 }
 
-/// lambda n on the wrist.
-void add_contact(const Contact& contact, double size, Scenery& scenery) {
-  const std::string force = "lambda_" + contact.name;
-  SceneryVector vector;
-  for (int k = 0; k < 3; ++k) vector[static_cast<std::size_t>(k)] = SceneryValue(force, {0, contact.normal[k]});
-  scenery.arrows.push_back({.name = contact.name, .at = {.body = "wrist"}, .vector = vector, .frame = "world"});
-  if (contact.is_finger) return;
-  // the wall's face, gap = normal . z + offset = 0, as a plate behind it
+/// A box whose first axis lies along `direction`.
+SceneryShape box_along(const Vector3d& direction, const Vector3d& size) {
+  const Vector3d axis = Vector3d::UnitX().cross(direction);
+  const double angle = std::atan2(axis.norm(), direction[0]);
+  return SceneryShape::box(size).at(Vector3d::Zero(), angle, axis.norm() > 0 ? Vector3d(axis.normalized()) : Vector3d(Vector3d::UnitZ()));
+}
+
+/// The wall's face, gap = normal . z + offset = 0, as a plate behind it.
+void add_wall(const Contact& contact, double size, Scenery& scenery) {
   const double thick = 0.05 * size;
-  const Vector3d middle = -(contact.offset + thick / 2) * contact.normal;
-  const Vector3d axis = Vector3d::UnitZ().cross(contact.normal);
-  const double angle = std::atan2(axis.norm(), contact.normal[2]);
-  const SceneryShape plate = SceneryShape::box(Vector3d(size, size, thick));
-  SceneryBody wall{.name = contact.name, .position = scenery_vector(middle)};
-  wall.shapes = {plate.at(Vector3d::Zero(), angle, axis.norm() > 0 ? Vector3d(axis.normalized()) : Vector3d(Vector3d::UnitX())).colored("ground")};
+  SceneryBody wall{.name = contact.name, .position = scenery_vector(-(contact.offset + thick / 2) * contact.normal)};
+  wall.shapes = {box_along(contact.normal, {thick, size, size}).colored("ground")};
   scenery.bodies.push_back(wall);
+}
+
+/// What the fingers hold, a hand below where the wrist starts: it moves along the tactile axis.
+void add_object(const Scene& scene, double half_width, Scenery& scenery) {
+  const Vector3d& axis = scene.controller.tactile_axis;
+  Vector3d middle = scene.position - axis.dot(scene.position) * axis;
+  middle[2] += 1.2 * scene.robot.wrist_radius;
+  SceneryBody object{.name = "object", .position = scenery_vector(middle)};
+  if (scene.object.mass > 0) {
+    for (int k = 0; k < 3; ++k) object.position[static_cast<std::size_t>(k)] = SceneryValue("object", {middle[k], axis[k]});
+  }
+  object.shapes = {box_along(axis, {2 * half_width, 1.6 * half_width, 1.6 * half_width})};
+  scenery.bodies.push_back(object);
+}
+
+/// A finger hangs from the wrist; its face stands gap - offset beside the object's middle.
+void add_finger(const Contact& contact, double wrist_radius, Scenery& scenery) {
+  const double thick = 0.1 * wrist_radius, height = 0.8 * wrist_radius;
+  SceneryBody finger{.name = contact.name, .parent = "object"};
+  for (int k = 0; k < 3; ++k) {
+    finger.position[static_cast<std::size_t>(k)] =
+        SceneryValue("gap_" + contact.name, {(thick / 2 - contact.offset) * contact.normal[k], contact.normal[k]});
+  }
+  finger.shapes = {box_along(contact.normal, {thick, height, height}).colored("arm")};
+  scenery.bodies.push_back(finger);
+  scenery.links.push_back({.kind = SceneryLink::Kind::rod,
+                           .from = {.body = "wrist", .at = scenery_vector(0.9 * wrist_radius * contact.normal)},
+                           .to = {.body = contact.name, .at = {0, 0, -height / 2}}});
+}
+
+void add_contact(const Scene& scene, const Contact& contact, Scenery& scenery) {
+  const Robot& robot = scene.robot;
+  if (contact.is_finger)
+    add_finger(contact, robot.wrist_radius, scenery);
+  else
+    add_wall(contact, robot.proximal_length + robot.base_radius, scenery);
+  SceneryVector force;  // lambda n on the wrist
+  for (int k = 0; k < 3; ++k) force[static_cast<std::size_t>(k)] = SceneryValue("lambda_" + contact.name, {0, contact.normal[k]});
+  scenery.arrows.push_back(
+      {.name = contact.name, .at = {.body = contact.is_finger ? contact.name : "wrist"}, .vector = force, .frame = "world"});
+}
+
+/// Yaw, pitch and roll, one in the other; the last one carries a tool.
+void add_tool(const Robot& robot, Scenery& scenery) {
+  std::string parent = "wrist";
+  const char* const names[] = {"yaw", "pitch", "roll"};
+  for (int k = 0; k < 3; ++k) {
+    SceneryBody gimbal{.name = names[k], .parent = parent, .angle = SceneryValue(names[k])};
+    gimbal.axis = Vector3d::Unit(2 - k);
+    parent = gimbal.name;
+    scenery.bodies.push_back(gimbal);
+  }
+  const double length = 1.6 * robot.wrist_radius, radius = 0.2 * robot.wrist_radius;
+  scenery.bodies.back().shapes = {SceneryShape::cylinder(Vector3d::Zero(), Vector3d(0, 0, length), radius).colored("arm"),
+                                  SceneryShape::box(Vector3d(3 * radius, radius, radius)).at(Vector3d(0, 0, length)).colored("frame")};
 }
 
 }  // namespace
@@ -64,7 +117,11 @@ Scenery scene_scenery(const Scene& scene) {
   wrist.trail = true;
   scenery.bodies.push_back(wrist);
   for (int i = 0; i < 3; ++i) add_arm(robot, i, scenery);
-  for (const Contact& contact : scene.contacts) add_contact(contact, robot.proximal_length + robot.base_radius, scenery);
+  if (const auto finger = std::ranges::find_if(scene.contacts, &Contact::is_finger); finger != scene.contacts.end()) {
+    add_object(scene, std::abs(finger->offset), scenery);
+  }
+  for (const Contact& contact : scene.contacts) add_contact(scene, contact, scenery);
+  if (scene.has_tool) add_tool(robot, scenery);
   if (scene.control != ControlMode::none) {
     SceneryBody reference{.name = "reference", .position = {"rx", "ry", "rz"}};
     reference.shapes = {SceneryShape::sphere(0.6 * thick).colored("force")};
@@ -72,6 +129,7 @@ Scenery scene_scenery(const Scene& scene) {
     SceneryPlot torques{.title = "Motor torques", .unit = "N m", .columns = {"tau1", "tau2", "tau3"}};
     if (std::isfinite(robot.torque_limit)) torques.lower = -robot.torque_limit, torques.upper = robot.torque_limit;
     scenery.plots.push_back(torques);
+    scenery.plots.push_back({.title = "Distance from the reference", .unit = "m", .columns = {"tracking_error"}});
   }
   scenery.plots.push_back({.title = "Distance from singularities (0 is at one)", .columns = {"type_1", "det_a"}});
   return scenery;

@@ -33,6 +33,8 @@ struct GimbalFrame {
 struct WristGimbals {
   Eigen::Vector3d inertia{0, 0, 0};  // J1, J2, J3: yaw, pitch, roll, kg m^2
 
+  bool are_there() const { return (inertia.array() > 0).all(); }
+
   Eigen::Matrix3d mass(const Eigen::Vector3d& angle) const {
     const double coupling = -inertia[2] * std::sin(angle[1]);
     Eigen::Matrix3d m = Eigen::Vector3d(inertia.sum(), inertia[1] + inertia[2], inertia[2]).asDiagonal();

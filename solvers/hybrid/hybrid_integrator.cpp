@@ -48,7 +48,7 @@ IntegrationResult HybridIntegrator::advance(DaeState& state, double t_end) {
     return result_;
   };
   if (!is_started_) t_start_ = state.t;
-  if (!is_where_we_left(state) && !restart(state, {})) return finish();
+  if (!is_where_we_left(state) && !restart(state, {}, false)) return finish();
   if (!is_started_ && options_.output_step > 0) {
     outputs_ = 1;
     if (!emit(state)) return finish();
@@ -75,19 +75,19 @@ IntegrationResult HybridIntegrator::advance(DaeState& state, double t_end) {
       }
       Crossing crossing;
       if (find_crossing(crossing)) {
-        if (!land(crossing, state)) return finish();
-        if (!write_outputs(state.t) || !emit(state) || !restart(state, crossing.fired) || !emit(state)) return finish();
+        if (!land(crossing, state) || !strike(state, crossing.fired)) return finish();
         continue;
       }
-      if (!current_->interpolate(current_->end(), state)) {
+      const bool is_struck = t_clock <= t_end && is_same_time(current_->end(), t_clock);
+      if (!(is_struck ? current_->land(current_->end(), state) : current_->interpolate(current_->end(), state))) {
         fail(IntegrationStatus::no_consistent_state, state, "no consistent multipliers");
         return finish();
       }
-      if (!write_outputs(state.t)) return finish();
+      if (!is_struck && !write_outputs(state.t)) return finish();
     }
     if (t_clock <= t_end && is_same_time(state.t, t_clock)) {
       state.t = t_clock;
-      if (!emit(state) || !restart(state, {}) || !emit(state)) return finish();
+      if (!strike(state, {})) return finish();
     }
   }
   state.t = t_end;
@@ -99,11 +99,11 @@ bool HybridIntegrator::is_where_we_left(const DaeState& state) const {
 }
 
 /// Consistent, and no level asks for another mode.
-bool HybridIntegrator::settle(DaeState& state, std::span<const int> fired) {
-  for (int k = 0; k < options_.max_events_at_once; ++k) {
-    if (dae_.has_manifold(state.mode) && !dae_.project(state.mode, state.t, state.x, workspace_))
+bool HybridIntegrator::settle(DaeState& state, std::span<const int> fired, bool is_consistent) {
+  for (int k = 0; k < options_.max_events_at_once; ++k, is_consistent = false) {
+    if (!is_consistent && dae_.has_manifold(state.mode) && !dae_.project(state.mode, state.t, state.x, workspace_))
       return fail(IntegrationStatus::no_consistent_state, state, "the position constraints cannot be closed");
-    if (!make_consistent(dae_, newton_, state, workspace_))
+    if (!is_consistent && !make_consistent(dae_, newton_, state, workspace_))
       return fail(IntegrationStatus::no_consistent_state, state, why_inconsistent(state));
     const Transition transition = dae_.transition(
         state, fired, workspace_, options_.on_event ? options_.on_event : [](const DaeEvent&) {});
@@ -115,8 +115,8 @@ bool HybridIntegrator::settle(DaeState& state, std::span<const int> fired) {
   return fail(IntegrationStatus::too_many_events, state, std::to_string(options_.max_events_at_once) + " events at one instant");
 }
 
-bool HybridIntegrator::restart(DaeState& state, std::span<const int> fired) {
-  if (!settle(state, fired)) return false;
+bool HybridIntegrator::restart(DaeState& state, std::span<const int> fired, bool is_consistent) {
+  if (!settle(state, fired, is_consistent)) return false;
   sample_.mode = state.mode;
   sample_.u = state.u;
   current_ = dae_.has_exact_flow(state.mode) ? exact_.get() : flow_.get();
@@ -125,6 +125,19 @@ bool HybridIntegrator::restart(DaeState& state, std::span<const int> fired) {
   evaluate_guards(state, before_);
   for (std::size_t i = 0; i < is_armed_.size(); ++i) is_armed_[i] = before_[static_cast<int>(i)] > 0;
   return true;
+}
+
+/// An event at a consistent state, and its rows.
+bool HybridIntegrator::strike(DaeState& state, std::span<const int> fired) {
+  if (!options_.on_output) return restart(state, fired, true);
+  if (!write_outputs(state.t, true)) return false;
+  struck_ = state;
+  const bool goes_on = restart(state, fired, true);
+  const bool jumps = !goes_on || state.x != struck_.x || state.mode.discrete != struck_.mode.discrete;
+  const bool is_due = options_.output_step > 0 && (next_output() <= state.t || is_same_time(next_output(), state.t));
+  if (is_due) ++outputs_;
+  if (jumps && !emit(struck_)) return false;
+  return goes_on && (!(jumps || is_due) || emit(state));
 }
 
 void HybridIntegrator::evaluate_guards(const DaeState& state, Vector& values) {
@@ -219,11 +232,13 @@ bool HybridIntegrator::land(Crossing& crossing, DaeState& state) {
   return true;
 }
 
-bool HybridIntegrator::write_outputs(double t_last) {
+/// The output steps up to t_last; where an event stands there, those before it.
+bool HybridIntegrator::write_outputs(double t_last, bool is_event) {
   if (!(options_.output_step > 0)) return true;
   for (;; ++outputs_) {
-    const double t = t_start_ + static_cast<double>(outputs_) * options_.output_step;
-    if (t > t_last && !is_same_time(t, t_last)) return true;
+    const double t = next_output();
+    const bool is_last = is_same_time(t, t_last);
+    if (is_last ? is_event : t > t_last) return true;
     if (!current_->interpolate(std::min(t, t_last), sample_)) return true;
     sample_.t = t;
     if (!emit(sample_)) {

@@ -1,7 +1,8 @@
 // Integration across events, over any flow.
 //
 // settle: xdot and y from F = 0, then the level test (Dae::transition until nothing changes any more); step; look for guards that fell at
-// the step's end and at points inside it; locate the first of them; settle again.
+// the step's end and at points inside it; locate the first of them; settle again. A record has one row for each output step, after what the
+// clock did there, and a row on either side of an event that resets x or changes a contact.
 //
 // Root finding is here and not in the flow's library: a guard that starts at zero must sleep until it has been positive, which a test for a
 // change of sign does not know, and both flows must see the same events.
@@ -27,12 +28,14 @@ class HybridIntegrator final : public Integrator {
   };
 
   bool is_where_we_left(const DaeState& state) const;
-  bool settle(DaeState& state, std::span<const int> fired);
-  bool restart(DaeState& state, std::span<const int> fired);
+  bool settle(DaeState& state, std::span<const int> fired, bool is_consistent);
+  bool restart(DaeState& state, std::span<const int> fired, bool is_consistent);
+  bool strike(DaeState& state, std::span<const int> fired);
   bool find_crossing(Crossing& crossing);
   double locate(int guard, double a, double b);
   bool land(Crossing& crossing, DaeState& state);
-  bool write_outputs(double t_last);
+  bool write_outputs(double t_last, bool is_event = false);
+  double next_output() const { return t_start_ + static_cast<double>(outputs_) * options_.output_step; }
   bool emit(const DaeState& state);
   bool look(double t);
   double guard_at(double t, int guard);
@@ -49,6 +52,7 @@ class HybridIntegrator final : public Integrator {
   IntegrationResult result_;
 
   DaeState left_;    // where the last call ended
+  DaeState struck_;  // just before an event
   DaeState sample_;  // inside a step
   Vector before_, after_, values_;
   std::vector<char> is_armed_;
