@@ -20,8 +20,8 @@ const std::vector<std::string> kSimulationKeys{"space", "gravity",    "duration"
                                                "atol",  "integrator", "impact_law", "audit",       "stabilisation"};
 const std::vector<std::string> kBodyKeys{"count",    "name",  "kind",       "mass",     "inertia",
                                          "position", "angle", "quaternion", "velocity", "omega"};
-const std::vector<std::string> kShapeKeys{"count",  "name", "body", "type",     "at",   "radius", "point",
-                                          "normal", "from", "to",   "vertices", "size", "angle"};
+const std::vector<std::string> kShapeKeys{"count", "name",     "body", "type",  "at",    "radius", "point",   "normal", "from",
+                                          "to",    "vertices", "size", "angle", "width", "depth",  "chamfer", "rim"};
 const std::vector<std::string> kLawKeys{"restitution",    "contact_time", "collision",        "alpha", "one_law", "friction",
                                         "friction_speed", "rest_speed",   "rest_acceleration"};
 const std::vector<std::string> kForceKeys{"count",   "name", "type",  "between", "on",        "from",  "to",        "stiffness",
@@ -329,6 +329,12 @@ void SceneReader<D>::read_contact(const Table& table) {
   if (found.empty())
     throw InputError(table.position("between"), "'" + names[0] + "' and '" + names[1] + "' cannot touch",
                      "a ball or corner on one side at least, on two bodies");
+  for (const Constraint<D>& c : found) {
+    if (c.shape.vertices.size() == 2 && c.radius == 0)
+      throw InputError(table.position("between"),
+                       fmt::format("'{}' and '{}' are a point and a line: neither has an inside", names[0], names[1]),
+                       "a disc or a capsule for one of them, or a half-plane or polygon");
+  }
   scene_.constraints.insert(scene_.constraints.end(), found.begin(), found.end());
   places_.resize(scene_.constraints.size(), table.position());
 }
