@@ -1,10 +1,7 @@
 // The shapes of a scene file.
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
+#include <algorithm>
 #include <cmath>
 
-#include "tenon/core/nearest_name.hpp"
 #include "tenon/problems/contact/scene_reader.hpp"
 
 namespace tenon::contact {
@@ -88,11 +85,7 @@ void SceneReader<D>::read_shape(const Table& table) {
   shape.body = body_of(table, "body", values_.text(table, "body", "world"));
   shape.name = values_.text(table, "name", shape.body == kWorld ? "world" : scene_.bodies[static_cast<std::size_t>(shape.body)].name);
   const std::string type = table.text("type");
-  if (std::find(types.begin(), types.end(), type) == types.end()) {
-    throw InputError(table.position("type"),
-                     fmt::format("unknown type of shape '{}', the nearest is '{}'", type, nearest_name(type, types)),
-                     fmt::format("one of {}", fmt::join(types, ", ")));
-  }
+  if (std::find(types.begin(), types.end(), type) == types.end()) reject_name(table, "type", "type of shape", type, types);
   const Vec at = point(table, "at", Vec::Zero());
   if constexpr (D == 2) {
     if (type == "hole") {
