@@ -209,6 +209,18 @@ TEST(FallingBody, AHeldCornerLetsGoOfATallBox) {
   }
 }
 
+// A box that rocks to rest opens one corner at each blow on the other, slower each time: the last blow keeps both.
+TEST(FallingBody, RocksToRestInFiniteTime) {
+  const Eigen::MatrixXd A = (Eigen::MatrixXd(2, 2) << 1.3, 0.7, 0.7, 1.3).finished();
+  const std::vector<contact::Touching> corners(2, {.restitution = 0});
+  const auto fast = contact::resolve(ImpactLaw::sequential, A, (Vector(2) << -5e-4, 0).finished(), corners);
+  EXPECT_FALSE(fast.is_held[1]);
+  EXPECT_NEAR(fast.rates[1], 5e-4 * 0.7 / 1.3, 1e-15);
+  const auto last = contact::resolve(ImpactLaw::sequential, A, (Vector(2) << -5e-7, 0).finished(), corners);
+  EXPECT_TRUE(last.is_held[0] && last.is_held[1]);
+  EXPECT_EQ(last.rates, Vector::Zero(2));
+}
+
 TEST(Scenes, CloseTheirEnergyAuditWithoutPenetration) {
   struct Expected {
     const char* scene;

@@ -222,6 +222,11 @@ TEST(BadScenes, AreToldWithTheirPlace) {
       complaint(kPendulum + "[[joint]]\nname = \"j\"\ntype = \"distance\"\nbetween = [\"bob\", \"world\"]\nto = [0.0, 1.0]\nlength = 0.5\n")
           .find("cannot close"),
       std::string::npos);
+  EXPECT_NE(
+      complaint(kPendulum + "[[shape]]\nbody = \"bob\"\ntype = \"point\"\n[[shape]]\nname = \"line\"\ntype = \"segment\"\nfrom = [-1.0, "
+                            "-2.0]\nto = [1.0, -2.0]\n[[contact]]\nname = \"c\"\nbetween = [\"bob\", \"line\"]\n")
+          .find("neither has an inside"),
+      std::string::npos);
   EXPECT_NE(complaint("[[body]]\nname = \"b\"\nmass = nan\n").find("finite"), std::string::npos);
 }
 

@@ -62,7 +62,7 @@ ContactDae<D>::ContactDae(Scene<D> scene) : scene_(std::move(scene)) {
   for (int i = 0; i < num_constraints(); ++i) {
     const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
     order_.push_back(i);
-    if (!c.is_joint()) contacts_.push_back(i);
+    if (!c.is_joint()) contacts_.push_back(i), reach_.push_back(reach(c));
     if (c.is_index_2()) index_2_.push_back(i);
     has_friction_ |= c.friction > 0;
     has_one_law_ |= !c.is_joint() && !c.is_two_scale;

@@ -119,6 +119,7 @@ class ContactDae final : public Dae {
   std::vector<Place> places_;
   std::vector<Velocities<double, D>> inverse_masses_;  // 0 where a body has no freedom; the world's last
   std::vector<int> contacts_;                          // the constraints that are no joints
+  std::vector<double> reach_;                          // of each contact, in the order of contacts_
   std::vector<int> index_2_;                           // the joints of index 2, in the order of their mu
   std::vector<int> order_;                             // of the constraints along the bodies, for the envelope
   std::vector<int> force_work_;                        // where in x a force's work stands, -1 where it has none

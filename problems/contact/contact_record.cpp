@@ -33,6 +33,8 @@ void ContactDae<D>::guards(const DaeMode& mode, const DaePoint& at, Workspace& w
     if (m == kFree) {
       // falls through 0 where the gap is closed and closing; a contact just released sleeps until one of both is over
       values[2 * i] = std::max(g.h + kGapTolerance, g.hdot + 2 * kSpeedTolerance);
+      // a point that has gone round a corner inside the shape opens again, toward another face: it has come in all the same
+      if (c.is_two_scale) values[2 * i + 1] = g.h + kTouching;
       if (!c.is_two_scale && g.h <= 0 && g.hdot < -2 * kSpeedTolerance) {  // closing, but the law would pull: until it would not
         values[2 * i + 1] = acceleration(c, g, at.xdot) - hddot;
       }
@@ -69,25 +71,28 @@ bool ContactDae<D>::guards_read_derivatives(const DaeMode& mode) const {
          std::any_of(contacts_.begin(), contacts_.end(), [&](int i) { return mode.discrete[static_cast<std::size_t>(i)] != kFree; });
 }
 
-/// As long as it takes to cross a shape's size at this speed and under gravity, so that nobody passes through a shape between two samples
-/// of a step; and half a radian of a turning body. A face without end has nothing behind it.
+/// As long as it takes to come from the gap to the contact's reach beyond it at this speed and under gravity, in whatever direction: no gap
+/// closes faster than its points move, so that nobody passes through a shape between two samples of a step. And half a radian of a turning
+/// body above a face, which has nothing behind it.
 template <int D>
 double ContactDae<D>::max_step(const DaeState& state, Workspace& workspace) const {
   auto& bodies = static_cast<Bodies&>(*workspace);
   load(state.t, state.x, bodies);
-  const double infinity = std::numeric_limits<double>::infinity(), gravity = scene_.gravity.norm();
-  double longest = infinity;
-  for (const int i : contacts_) {
+  const double gravity = scene_.gravity.norm();
+  double longest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const int i = contacts_[k];
     const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
     if (state.mode.discrete[static_cast<std::size_t>(i)] != kFree) continue;
+    const Pose<double, D>&A = of(bodies.poses, c.a), &B = of(bodies.poses, c.b);
     if (c.shape.is_face()) {
       if (c.gap.a.squaredNorm() > 0 && place(c.a).nv > D)
         longest = std::min(longest, 0.5 / of(bodies.v, c.a).tail(kVelocities<D> - D).norm());
       continue;
     }
     const GapValue<double, D> g = gap_of(i, state.t, bodies);
-    const double size = c.shape.vertices.empty() && c.gap.sign < 0 ? 0.1 * c.gap.offset : std::max(c.radius, 5e-3);
-    const double way = std::max(g.h, 0.0) + size, speed = std::abs(g.hdot);
+    const Point<double, D> turn_a = cross(A.omega, g.at_a), turn_b = cross(B.omega, g.at_b);
+    const double way = std::max(g.h, 0.0) + reach_[k], speed = (A.pdot + turn_a - B.pdot - turn_b).norm();
     longest = std::min(longest, 2 * way / (speed + std::sqrt(speed * speed + 2 * gravity * way)));
   }
   return longest;

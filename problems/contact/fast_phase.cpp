@@ -8,6 +8,7 @@ namespace tenon::contact {
 namespace {
 
 constexpr double kStandsStill = 1e-10;     // m/s: slower closing is none
+constexpr double kSettled = 1e-3;          // of its rest_speed: a contact that opens more slowly after the last blow stays
 constexpr double kRank = 1e-12;            // relative: a held contact that depends on others carries nothing of its own
 constexpr double kStepsOfAContact = 4000;  // of the compliant laws, over one contact time
 constexpr double kMostContactTimes = 400;
@@ -222,16 +223,7 @@ class Resolution {
       active.push_back(next);
       for (;;) {
         const int m = static_cast<int>(active.size());
-        Matrix B(m, m);
-        Vector b(m);
-        for (int r = 0; r < m; ++r) {
-          b[r] = -out_.rates[active[at(r)]];
-          for (int c = 0; c < m; ++c) B(r, c) = A(active[at(r)], active[at(c)]);
-        }
-        Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition;
-        decomposition.setThreshold(kRank);
-        decomposition.compute(B);
-        const Vector s = decomposition.solve(b);
+        const Vector s = stopping(active);
         double share = 1;
         int leaves = -1;
         for (int r = 0; r < m; ++r) {
@@ -245,14 +237,33 @@ class Resolution {
         if (active.empty()) break;
       }
     }
-    Vector impulse = Vector::Zero(A_.rows());
-    impulse.head(k_) = p;
-    const std::vector<char> were_held = out_.is_held;
-    apply(fastest, impulse, 0);
+    // of what rocks to rest one corner opens at each blow, ever more slowly: in the end they all stay, and the forces decide
+    const Vector after = out_.rates.head(k_) + A * p;
+    std::vector<int> still;
     for (int i = 0; i < k_; ++i) {
-      out_.is_held[at(i)] = p[i] > 0 || (were_held[at(i)] && std::abs(out_.rates[i]) <= kStandsStill);
-      if (out_.is_held[at(i)]) out_.rates[i] = 0;
+      if (p[i] > 0 || after[i] <= kSettled * touching_[at(i)].rest_speed) still.push_back(i);
     }
+    Vector impulse = Vector::Zero(A_.rows());
+    const Vector s = stopping(still);
+    for (std::size_t r = 0; r < still.size(); ++r) impulse[still[r]] = s[static_cast<int>(r)];
+    apply(fastest, impulse, 0);
+    std::fill(out_.is_held.begin(), out_.is_held.end(), char{0});
+    for (const int i : still) out_.is_held[at(i)] = 1, out_.rates[i] = 0;
+  }
+
+  /// The impulses of these contacts that bring them to a stop, the least ones where they depend on one another.
+  Vector stopping(const std::vector<int>& chosen) const {
+    const int m = static_cast<int>(chosen.size());
+    Matrix B(m, m);
+    Vector b(m);
+    for (int r = 0; r < m; ++r) {
+      b[r] = -out_.rates[chosen[at(r)]];
+      for (int c = 0; c < m; ++c) B(r, c) = A_(chosen[at(r)], chosen[at(c)]);
+    }
+    Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition;
+    decomposition.setThreshold(kRank);
+    decomposition.compute(B);
+    return decomposition.solve(b);
   }
 
   const Matrix& A_;

@@ -92,6 +92,20 @@ inline Gap<3> nearest_feature(const Constraint<3>& c, const Point<double, 3>& p)
   return gap;
 }
 
+/// How far a contact may close beyond its touch before it looks like another, m: its balls, half of the polygon's or box's least side, a
+/// tenth of a rope. Infinity where there is nothing behind a face.
+template <int D>
+double reach(const Constraint<D>& c) {
+  if (c.shape.is_face()) return std::numeric_limits<double>::infinity();
+  if (c.shape.is_box()) return c.radius + c.shape.half.minCoeff();
+  if (c.shape.vertices.empty()) return c.gap.sign < 0 ? 0.1 * c.gap.offset : c.radius;
+  const auto& vertices = c.shape.vertices;
+  double least = vertices.size() == 2 ? 0 : std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < vertices.size(); ++k)
+    least = std::min(least, 0.5 * (vertices[(k + 1) % vertices.size()] - vertices[k]).norm());
+  return c.radius + least;
+}
+
 /// The smooth gap that holds at these poses.
 template <int D>
 Gap<D> gap_at(const Constraint<D>& c, const Pose<double, D>& A, const Pose<double, D>& B) {

@@ -4,9 +4,10 @@
 //     [simulation]  space, gravity, duration, output_step, rtol, atol, integrator, impact_law, audit,
 //                   stabilisation = "baumgarte" | "gear-gupta-leimkuhler"               of joints
 //     [[body]]      name, kind = "line" | "point" | "rigid", mass, inertia, position, angle (planar) or quaternion, velocity, omega
-//     [[shape]]     name, body = "world", type = "point" | "disc" | "half-plane" | "segment" | "capsule" | "polygon" | "box" (in space:
-//     "sphere", "half-space"),
+//     [[shape]]     name, body = "world", type = "point" | "disc" | "half-plane" | "segment" | "capsule" | "polygon" | "box" | "hole"
+//                   (in space: "point", "sphere", "half-space", "capsule", "box"),
 //                   at, radius, point, normal, from, to, vertices, size, angle           in the body's own axes
+//                   of a hole: width, depth, chamfer, rim (how wide the plate is around it), at (middle of its mouth), angle
 //     [[joint]]     name, type = "revolute" | "distance" | "rope" | "slide" | "angle" | "weld" | "guide", between, at, from, to, length,
 //     axis, lock, pole or stabilisation,
 //                   amplitude, frequency, phase, and a rope's contact keys                places in world axes, at the start

@@ -11,6 +11,12 @@
 
 namespace tenon::contact {
 
+inline constexpr double kDefaultPole = 5;  // 1/s: of a contact's law after its collision, and of joints
+
+/// Throws InputError: nobody knows this name, and which is the nearest.
+[[noreturn]] void reject_name(const toml_file::Table& table, const std::string& key, const std::string& what, const std::string& name,
+                              const std::vector<std::string>& known);
+
 template <int D>
 class SceneReader {
  public:
@@ -31,6 +37,7 @@ class SceneReader {
   void read_contact(const Table& table);
   void read_force(const Table& table);
   void read_law(const Table& table, Constraint<D>& c) const;
+  Stabilisation stabilisation(const Table& table) const;
   void check_start() const;
 
   Vec point(const Table& table, const std::string& key) const;

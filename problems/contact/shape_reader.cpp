@@ -1,10 +1,7 @@
 // The shapes of a scene file.
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
+#include <algorithm>
 #include <cmath>
 
-#include "tenon/core/nearest_name.hpp"
 #include "tenon/problems/contact/scene_reader.hpp"
 
 namespace tenon::contact {
@@ -27,6 +24,36 @@ std::vector<Point<double, 3>> corners(const Point<double, 3>& centre, const Poin
     list.push_back(centre + side.cwiseProduct(size));
   }
   return list;
+}
+
+/// A hole with a chamfered mouth about `at`, open upwards, as the convex parts of the plate that it is in: a cheek on either side, with the
+/// corners that a peg meets, and the floor.
+///
+///       _____              _____   y = 0
+///            \            /        chamfer, at 45 degrees
+///             |  width   |
+///             |__________|         y = -depth
+std::vector<Shape<2>> hole(const Point<double, 2>& at, double angle, double width, double depth, double chamfer, double rim) {
+  const double throat = 0.5 * width, mouth = throat + chamfer, outside = mouth + rim, bottom = -depth - width;
+  Shape<2> left, right, floor;
+  right.convex.vertices = {{throat, bottom}, {outside, bottom}, {outside, 0}, {mouth, 0}};
+  right.balls = {{{mouth, 0}, 0}};
+  if (chamfer > 0) {
+    right.convex.vertices.push_back({throat, -chamfer});
+    right.balls.push_back({{throat, -chamfer}, 0});
+  }
+  floor.convex.vertices = {{-outside, bottom}, {outside, bottom}, {outside, -depth}, {-outside, -depth}};
+  left = right;
+  std::reverse(left.convex.vertices.begin(), left.convex.vertices.end());
+  for (auto& v : left.convex.vertices) v[0] = -v[0];
+  for (auto& ball : left.balls) ball.centre[0] = -ball.centre[0];
+  std::vector<Shape<2>> parts{left, right, floor};
+  const Eigen::Rotation2Dd turn(angle);
+  for (Shape<2>& part : parts) {
+    for (auto& v : part.convex.vertices) v = at + turn * v;
+    for (auto& ball : part.balls) ball.centre = at + turn * ball.centre;
+  }
+  return parts;
 }
 
 double signed_area(const std::vector<Point<double, 2>>& vertices) {
@@ -52,18 +79,25 @@ bool is_convex(const std::vector<Point<double, 2>>& vertices) {
 template <int D>
 void SceneReader<D>::read_shape(const Table& table) {
   static const std::vector<std::string> types =
-      D == 2 ? std::vector<std::string>{"point", "disc", "half-plane", "segment", "capsule", "polygon", "box"}
+      D == 2 ? std::vector<std::string>{"point", "disc", "half-plane", "segment", "capsule", "polygon", "box", "hole"}
              : std::vector<std::string>{"point", "sphere", "half-space", "capsule", "box"};
   Shape<D> shape;
   shape.body = body_of(table, "body", values_.text(table, "body", "world"));
   shape.name = values_.text(table, "name", shape.body == kWorld ? "world" : scene_.bodies[static_cast<std::size_t>(shape.body)].name);
   const std::string type = table.text("type");
-  if (std::find(types.begin(), types.end(), type) == types.end()) {
-    throw InputError(table.position("type"),
-                     fmt::format("unknown type of shape '{}', the nearest is '{}'", type, nearest_name(type, types)),
-                     fmt::format("one of {}", fmt::join(types, ", ")));
-  }
+  if (std::find(types.begin(), types.end(), type) == types.end()) reject_name(table, "type", "type of shape", type, types);
   const Vec at = point(table, "at", Vec::Zero());
+  if constexpr (D == 2) {
+    if (type == "hole") {
+      const double width = positive(table, "width"), depth = positive(table, "depth");
+      const double chamfer = in_interval(table, "chamfer", 0, depth, 0), rim = table.has("rim") ? positive(table, "rim") : width;
+      for (Shape<2>& part : hole(at, values_.number(table, "angle", 0), width, depth, chamfer, rim)) {
+        part.name = shape.name, part.body = shape.body;
+        shapes_.push_back(part);
+      }
+      return;
+    }
+  }
   if (type == "point") shape.balls = {{at, 0}};
   if (type == "disc" || type == "sphere") shape.balls = {{at, positive(table, "radius")}};
   if (type == "half-plane" || type == "half-space") {
