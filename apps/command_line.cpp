@@ -69,7 +69,7 @@ const std::map<std::string, std::function<CLI::Option*(CLI::App&, Arguments&)>>&
          return a.add_option("--time-limit", v.time_limit, "where a solve gives up, s")->type_name("S")->check(finite);
        }},
       {"seed", [](App& a, Args& v) { return a.add_option("--seed", v.seed, "of random numbers")->type_name("N")->capture_default_str(); }},
-      {"rows", [](App& a, Args& v) { return a.add_option("--rows", v.rows, "random rows of a vehicle")->type_name("N")->check(count); }},
+      {"rows", [](App& a, Args& v) { return a.add_option("--rows", v.rows, "random rows of a vehicle, directions of an envelope")->type_name("N")->check(count); }},
       {"starts",
        [](App& a, Args& v) {
          return a.add_option("--starts", v.starts, "solve from so many points; the best answer counts")

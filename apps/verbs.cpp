@@ -6,6 +6,7 @@ int run_allocate(const Arguments&);
 int run_bench(const Arguments&);
 int run_check(const Arguments&);
 int run_compare(const Arguments&);
+int run_envelope(const Arguments&);
 int run_fit(const Arguments&);
 int run_list(const Arguments&);
 int run_report(const Arguments&);
@@ -31,6 +32,13 @@ const std::vector<Verb>& verbs() {
        1,
        {"inverse", "forward", "jacobians", "workspace", "impedance", "set", "json", "quiet"},
        &run_robot},
+      {"envelope",
+       "hover efficiency, largest force and torque in all directions, and with each rotor failed",
+       "VEHICLE",
+       1,
+       1,
+       {"rows", "output", "report", "solver", "set", "json", "quiet"},
+       &run_envelope},
       {"fit", "thrust and torque polynomials from calibration data", "BENCH.csv", 1, 1, {"degree", "constant", "json"}, &run_fit},
       {"simulate",
        "a scene in time: bodies, contacts, events, energy",
