@@ -83,8 +83,8 @@ void print_summary(const std::string& vehicle, std::size_t directions, const std
   print_unreachable(maps);
   fmt::print("no command gives more than {:.1e} N or {:.1e} N m beyond these\n", force_gap, torque_gap);
   if (!is_convex) {
-    fmt::print("the rotors' sets are not convex: each point is a local optimum{}\n",
-               failures > 0 ? fmt::format(", {} of the nearest convex set because a solve failed", failures) : "");
+    fmt::print("the rotors' sets are not convex: each value is the best of three local optima{}\n",
+               failures > 0 ? fmt::format(", {} were not found", failures) : "");
   }
 }
 

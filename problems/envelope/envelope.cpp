@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "tenon/problems/allocation/linear_allocation.hpp"
 
@@ -38,6 +39,13 @@ Wrench torque(const Eigen::Vector3d& m) {
   return w;
 }
 
+/// Where a solve from x ends, nothing where it fails.
+std::optional<Vector> solve(Solver& solver, const Vector& x) {
+  Point point(static_cast<int>(x.size()), 6);
+  point.x = x;
+  return succeeded(solver.solve(point).status) ? std::optional(point.x) : std::nullopt;
+}
+
 }  // namespace
 
 Envelope::Envelope(const Vehicle& vehicle, int failed, const SolverFactory& make_solver)
@@ -47,8 +55,12 @@ Envelope::Envelope(const Vehicle& vehicle, int failed, const SolverFactory& make
       set_(rotors_),
       is_convex_(set_.deviation() <= kConvex),
       unreachable_(lost_directions(vehicle, failed)),
-      program_(rotors_) {
-  if (!is_convex_ && make_solver) solver_ = make_solver(program_);
+      farthest_(rotors_, RayProgram::Aim::farthest),
+      least_effort_(rotors_, RayProgram::Aim::least_effort) {
+  if (!is_convex_ && make_solver) {
+    farthest_solver_ = make_solver(farthest_);
+    least_effort_solver_ = make_solver(least_effort_);
+  }
   hovers_level_ = farthest(Wrench::Zero(), force(Eigen::Vector3d::UnitZ())).length >= kHover * weight_;
 }
 
@@ -74,27 +86,33 @@ Envelope::Farthest Envelope::farthest(const Wrench& from, const Wrench& directio
   if (answer.normal.isZero()) return {length, 0};
   // t <= (support(n) - n'W) / n'd
   const double bound = (set_.support(answer.normal) - answer.normal.dot(from)) / answer.normal.dot(direction);
-  if (solver_) {
-    program_.set_farthest(from, direction);
-    Point point(program_.num_variables(), program_.num_constraints());
-    point.x = start(answer);
-    if (solve(point)) length = std::max(0.0, point.x[program_.num_variables() - 1]);
+  if (farthest_solver_) {
+    farthest_.set_ray(from, direction);
+    length = kNone;
+    for (const Vector& x : {start(answer), start(set_.least_effort(from + 0.5 * answer.length * direction)), neutral()}) {
+      const std::optional<Vector> found = solve(*farthest_solver_, x);
+      if (found && !(found->tail<1>()[0] < std::max(0.0, length))) length = found->tail<1>()[0];
+    }
+    if (std::isnan(length)) {
+      ++failures_;
+      return {kNone, 0};
+    }
   }
   return {length, std::max(0.0, bound - length)};
 }
 
 /// Of the least effort at a wrench, for each working rotor.
 Vector Envelope::thrusts(const Wrench& wrench) {
-  const AttainableSet::Answer answer = set_.least_effort(wrench);
-  Point point(program_.num_variables(), program_.num_constraints());
-  point.x = start(answer);
-  if (solver_) {
-    program_.set_least_effort(wrench);
-    solve(point);
+  Vector x = start(set_.least_effort(wrench));
+  if (least_effort_solver_) {
+    least_effort_.set_ray(wrench);
+    const std::optional<Vector> found = solve(*least_effort_solver_, x);
+    if (!found) ++failures_;
+    x = found ? *found : Vector::Constant(x.size(), kNone);
   }
   Vector thrust(std::ssize(rotors_));
   for (std::size_t i = 0; i < rotors_.size(); ++i) {
-    thrust[static_cast<Eigen::Index>(i)] = set_.rotors()[i].thrust(point.x[static_cast<Eigen::Index>(i)]);
+    thrust[static_cast<Eigen::Index>(i)] = set_.rotors()[i].thrust(x[static_cast<Eigen::Index>(i)]);
   }
   return thrust;
 }
@@ -112,13 +130,16 @@ Vector Envelope::start(const AttainableSet::Answer& answer) const {
   return x;
 }
 
-/// False, and the point as it was, where the solver fails.
-bool Envelope::solve(Point& point) {
-  const Vector before = point.x;
-  if (succeeded(solver_->solve(point).status)) return true;
-  point.x = before;
-  ++failures_;
-  return false;
+/// Every throttle and angle in the middle of its limits.
+Vector Envelope::neutral() const {
+  const Eigen::Index n = std::ssize(rotors_);
+  Vector x = Vector::Zero(2 * n + 1);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Rotor& rotor = rotors_[static_cast<std::size_t>(i)];
+    x[i] = (rotor.throttle_lower + rotor.throttle_upper) / 2;
+    if (std::isfinite(rotor.angle_lower) && std::isfinite(rotor.angle_upper)) x[n + i] = (rotor.angle_lower + rotor.angle_upper) / 2;
+  }
+  return x;
 }
 
 }  // namespace tenon

@@ -19,7 +19,7 @@ namespace tenon {
 /// In one direction n of the body. For X1 and X2 n is up; NaN where the vehicle cannot hover so.
 struct EnvelopePoint {
   double X1, X2;
-  double force;         // N
+  double force;         // N; this and the next: NaN where no start led to an answer, which only happens where the set is not convex
   double torque;        // N m
   double torque_hover;  // N m; NaN where it cannot hover with body z up
   double force_gap;     // N: no command gives more than force + force_gap
@@ -31,7 +31,7 @@ class Envelope {
   using SolverFactory = std::function<std::unique_ptr<Solver>(const Nlp&)>;
 
   /// Of a vehicle that normalise() has accepted, `failed` from 0 a rotor that gives nothing, -1 for none. The solver is asked only where the
-  /// attainable set is not convex; without one the answers there are those of the convex set that is nearest.
+  /// attainable set is not convex, from three starts for each boundary point; without one the answers are those of the convex set around it.
   explicit Envelope(const Vehicle& vehicle, int failed = -1, const SolverFactory& make_solver = {});
 
   Envelope(const Envelope&) = delete;  // the solver knows where the program is
@@ -43,7 +43,7 @@ class Envelope {
   bool is_convex() const { return is_convex_; }
   /// Directions of force and torque that no command gives, limits aside, in words.
   const std::vector<std::string>& unreachable() const { return unreachable_; }
-  /// Solves of (4.1) that failed: their answers are those of the convex set.
+  /// Answers that (4.1) did not find: they are NaN.
   long failures() const { return failures_; }
 
  private:
@@ -54,7 +54,7 @@ class Envelope {
   Farthest farthest(const Wrench& from, const Wrench& direction);
   Vector thrusts(const Wrench& wrench);
   Vector start(const AttainableSet::Answer& answer) const;
-  bool solve(Point& point);
+  Vector neutral() const;
 
   int num_rotors_;
   double weight_;
@@ -62,8 +62,8 @@ class Envelope {
   AttainableSet set_;
   bool is_convex_, hovers_level_;
   std::vector<std::string> unreachable_;
-  RayProgram program_;
-  std::unique_ptr<Solver> solver_;
+  RayProgram farthest_, least_effort_;
+  std::unique_ptr<Solver> farthest_solver_, least_effort_solver_;  // none where the set is convex
   long failures_ = 0;
 };
 

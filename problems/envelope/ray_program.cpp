@@ -45,16 +45,9 @@ struct Contribution {
 
 }  // namespace
 
-void RayProgram::set_farthest(const Wrench& from, const Wrench& direction) {
+void RayProgram::set_ray(const Wrench& from, const Wrench& direction) {
   from_ = from;
   direction_ = direction;
-  is_effort_ = false;
-}
-
-void RayProgram::set_least_effort(const Wrench& wrench) {
-  from_ = wrench;
-  direction_.setZero();
-  is_effort_ = true;
 }
 
 SparsePattern RayProgram::hessian_pattern() const {

@@ -13,11 +13,12 @@ namespace tenon {
 
 class RayProgram final : public Nlp {
  public:
-  explicit RayProgram(std::vector<Rotor> rotors) : rotors_(std::move(rotors)) {}
+  enum class Aim { farthest, least_effort };
 
-  /// From now on: the farthest point from W along d, or the least effort at W.
-  void set_farthest(const Wrench& from, const Wrench& direction);
-  void set_least_effort(const Wrench& wrench);
+  RayProgram(std::vector<Rotor> rotors, Aim aim) : rotors_(std::move(rotors)), is_effort_(aim == Aim::least_effort) {}
+
+  /// W and d; for the least effort d has no meaning.
+  void set_ray(const Wrench& from, const Wrench& direction = Wrench::Zero());
 
   int num_variables() const override { return 2 * num_rotors() + 1; }
   int num_constraints() const override { return 6; }
@@ -36,7 +37,7 @@ class RayProgram final : public Nlp {
 
   std::vector<Rotor> rotors_;
   Wrench from_ = Wrench::Zero(), direction_ = Wrench::Zero();
-  bool is_effort_ = false;
+  bool is_effort_;
 };
 
 }  // namespace tenon
