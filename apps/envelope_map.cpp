@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace tenon {
 
 namespace {
 
-constexpr int kStarts = 4;  // of a search for an extreme, from the best points of the grid
+constexpr int kStarts = 2;  // of a search for an extreme, from the best points of the grid
 
 /// The largest of sign times the quantity; no value where the quantity is defined nowhere.
 std::optional<SphereExtreme> extreme(Envelope& envelope, double EnvelopePoint::*quantity, double sign, const EnvelopeMap& map,

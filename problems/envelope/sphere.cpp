@@ -23,7 +23,7 @@ std::vector<Eigen::Vector3d> sphere_grid(int count) {
 SphereExtreme climb(const std::function<double(const Eigen::Vector3d&)>& quantity, SphereExtreme start, double reach) {
   constexpr int kNeighbours = 6;
   constexpr int kMaxRounds = 200;
-  constexpr double kLeastReach = 1e-7;
+  constexpr double kLeastReach = 1e-6;
   constexpr double kTurn = 0.7;          // rad, from one round to the next: so that no ridge hides between the neighbours
   constexpr double kImprovement = 1e-9;  // relative: less is rounding
   SphereExtreme best = start;

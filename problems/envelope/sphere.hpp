@@ -20,7 +20,7 @@ struct SphereExtreme {
 };
 
 /// The largest value near a direction: six neighbours at a distance are tried, which is halved where none is better, from `reach` (rad) to
-/// 1e-7. A value that is NaN counts as the lowest; `value` at the start is known.
+/// 1e-6. A value that is NaN counts as the lowest; `value` at the start is known.
 SphereExtreme climb(const std::function<double(const Eigen::Vector3d&)>& quantity, SphereExtreme start, double reach);
 
 }  // namespace tenon
