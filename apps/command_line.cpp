@@ -71,7 +71,6 @@ const std::map<std::string, std::function<CLI::Option*(CLI::App&, Arguments&)>>&
          return a.add_option("--time-limit", v.time_limit, "where a solve gives up, s")->type_name("S")->check(finite);
        }},
       {"seed", [](App& a, Args& v) { return a.add_option("--seed", v.seed, "of random numbers")->type_name("N"); }},
-      {"rows", [](App& a, Args& v) { return a.add_option("--rows", v.rows, "random rows of a vehicle")->type_name("N")->check(count); }},
       {"samples", [](App& a, Args& v) { return a.add_option("--samples", v.samples, "worlds to draw")->type_name("N")->check(count); }},
       {"baselines", [](App& a, Args& v) { return a.add_flag("--baselines", v.baselines, "the scene's baselines in the same worlds, too"); }},
       {"margins", [](App& a, Args& v) { return a.add_flag("--margins", v.margins, "of stability in each mode, and of capture"); }},
@@ -82,6 +81,7 @@ const std::map<std::string, std::function<CLI::Option*(CLI::App&, Arguments&)>>&
              ->type_name("N")
              ->check(CLI::Range(1, 1 << 12).description(""));
        }},
+      {"rows", [](App& a, Args& v) { return a.add_option("--rows", v.rows, "random rows of a vehicle, directions of an envelope")->type_name("N")->check(count); }},
       {"starts",
        [](App& a, Args& v) {
          return a.add_option("--starts", v.starts, "solve from so many points; the best answer counts")

@@ -8,6 +8,7 @@ int run_bench(const Arguments&);
 int run_check(const Arguments&);
 int run_compare(const Arguments&);
 int run_estimate(const Arguments&);
+int run_envelope(const Arguments&);
 int run_fit(const Arguments&);
 int run_fly(const Arguments&);
 int run_list(const Arguments&);
@@ -43,6 +44,13 @@ const std::vector<Verb>& verbs() {
        1,
        {"output", "events", "report", "solver", "set", "seed", "json", "quiet", "real-time"},
        &run_fly},
+      {"envelope",
+       "hover efficiency, largest force and torque in all directions, and with each rotor failed",
+       "VEHICLE",
+       1,
+       1,
+       {"rows", "output", "report", "solver", "set", "json", "quiet"},
+       &run_envelope},
       {"fit", "thrust and torque polynomials from calibration data", "BENCH.csv", 1, 1, {"degree", "constant", "json"}, &run_fit},
       {"simulate",
        "a scene in time: bodies, contacts, events, energy",

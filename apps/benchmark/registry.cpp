@@ -6,6 +6,7 @@ void add_allocation(std::vector<Benchmark>& rows);
 void add_contact(std::vector<Benchmark>& rows);
 void add_delta(std::vector<Benchmark>& rows);
 void add_flight(std::vector<Benchmark>& rows);
+void add_envelope(std::vector<Benchmark>& rows);
 void add_linear_allocation(std::vector<Benchmark>& rows);
 void add_linear_quadratic(std::vector<Benchmark>& rows);
 void add_swing_up(std::vector<Benchmark>& rows);
@@ -19,6 +20,7 @@ std::vector<Benchmark> benchmarks() {
   add_contact(rows);
   add_delta(rows);
   add_flight(rows);
+  add_envelope(rows);
   return rows;
 }
 

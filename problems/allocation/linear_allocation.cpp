@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tenon/problems/allocation/throttle_map.hpp"
+#include "tenon/problems/allocation/inverse_throttle_map.hpp"
 
 namespace tenon {
 
@@ -23,21 +23,6 @@ Wrench unit_wrench(const Eigen::Vector3d& r, const Eigen::Vector3d& d, double si
   Wrench w;
   w << d, r.cross(d) + signed_ratio * d;
   return w;
-}
-
-/// Solves thrust(u) = f on [lower, upper] for a map that rises; Newton's steps, bisected where they leave the bracket.
-double invert(const std::vector<double>& thrust, double f, double lower, double upper) {
-  double u = lower + (upper - lower) / 2;
-  for (int k = 0; k < 100; ++k) {
-    const double error = throttle_map(thrust, u) - f;
-    if (error == 0) return u;
-    (error < 0 ? lower : upper) = u;
-    double next = u - error / throttle_map_slope(thrust, u);
-    if (!(next > lower && next < upper)) next = lower + (upper - lower) / 2;
-    if (std::abs(next - u) <= 1e-16 * std::max(1.0, std::abs(u))) return next;
-    u = next;
-  }
-  return u;
 }
 
 }  // namespace
@@ -158,7 +143,7 @@ double LinearAllocation::throttle_of(const Arm& arm, double thrust) const {
     const double u = 2 * rise / (slope + std::sqrt(slope * slope + 4 * arm.thrust[2] * rise));
     if (u >= lower && u <= upper) return u;
   }
-  return invert(arm.thrust, thrust, lower, upper);
+  return inverse_throttle_map(arm.thrust, thrust, lower, upper);
 }
 
 Wrench LinearAllocation::wrench(ConstVectorRef u, ConstVectorRef a) const {

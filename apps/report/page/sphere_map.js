@@ -1,13 +1,37 @@
 // A quantity over all directions: a globe that is turned by hand, and an equal-area map of the whole sphere.
 //
-// Columns nx, ny, nz hold unit directions, every other column a quantity. A pixel has the value of the nearest direction. The map is
-// Hammer's:  x = 2 sqrt2 cos(b) sin(l/2) / D,   y = sqrt2 sin(b) / D,   D = sqrt(1 + cos(b) cos(l/2)),   l longitude, b latitude.
+// Columns nx, ny, nz hold unit directions, every other column a quantity; force_failed3 is the quantity force in the case that rotor 3 has
+// failed, and all cases of a quantity share one scale. A pixel has the value of the nearest direction, and none where that is empty. The map
+// is Hammer's:  x = 2 sqrt2 cos(b) sin(l/2) / D,   y = sqrt2 sin(b) / D,   D = sqrt(1 + cos(b) cos(l/2)),   l longitude, b latitude.
 import {cssGradient, scaleColor} from "./color_scale.js";
 import {download, element, whenSeen} from "./element.js";
-import {number} from "./format.js";
+import {number, withUnit} from "./format.js";
 import {Table} from "./table.js";
 
 const kMostCells = 24;  // of the look-up grid, along each axis
+
+/// What `tenon envelope` calls its quantities: [in words, unit].
+const kQuantities = {
+  X1: ["X1: upward share of the thrust, this direction up", ""],
+  X2: ["X2: weight over N times the largest rotor force", ""],
+  force: ["Largest force without a torque", "N"],
+  torque: ["Largest torque without a force", "N m"],
+  torque_hover: ["Largest torque, carried with body z up", "N m"],
+};
+
+const kUndefined = [150, 150, 150];  // the colour where a quantity has no value
+const kAxes = [["x", 1, 0, 0], ["−x", -1, 0, 0], ["y", 0, 1, 0], ["−y", 0, -1, 0], ["z", 0, 0, 1], ["−z", 0, 0, -1]];
+
+/// {quantity: {case: column}}, the whole vehicle being case 0.
+function byCase(names) {
+  const out = new Map();
+  for (const name of names) {
+    const [, quantity, failed] = /^(.*?)(?:_failed(\d+))?$/.exec(name);
+    if (!out.has(quantity)) out.set(quantity, new Map());
+    out.get(quantity).set(Number(failed ?? 0), name);
+  }
+  return out;
+}
 
 /// The nearest of many directions, by a grid of cells over the cube around the sphere.
 class Directions {
@@ -59,26 +83,36 @@ function hammer(x, y) {
   return [Math.cos(latitude) * Math.cos(longitude), Math.cos(latitude) * Math.sin(longitude), Math.sin(latitude)];
 }
 
+/// Where a direction stands on the map.
+function placeOnMap(x, y, z) {
+  const half = Math.atan2(y, x) / 2, flat = Math.hypot(x, y), D = Math.sqrt(1 + flat * Math.cos(half));
+  return [(flat * Math.sin(half)) / D, z / D];
+}
+
 export class SphereMap {
   constructor(part, index) {
     this.table = new Table(part);
     this.plots = [];
     this.title = "Over all directions";
-    this.quantities = this.table.names.filter((name) => !["nx", "ny", "nz"].includes(name) && !this.table.isText(name));
+    this.columns = byCase(this.table.names.filter((name) => !["nx", "ny", "nz"].includes(name) && !this.table.isText(name)));
+    const cases = [...new Set([...this.columns.values()].flatMap((column) => [...column.keys()]))].sort((a, b) => a - b);
     this.directions = new Directions(...["nx", "ny", "nz"].map((name) => this.table.numbers(name)));
     this.turnZ = -0.6;
     this.tilt = 0.5;
-    this.choice = element("select", {"aria-label": "Quantity", onchange: () => this.draw()}, ...this.quantities.map((name) => element("option", {}, name)));
+    const choice = (label, options) => element("select", {"aria-label": label, onchange: () => this.draw()}, ...options);
+    this.quantity = choice("Quantity", [...this.columns.keys()].map((name) => element("option", {value: name}, kQuantities[name]?.[0] ?? name)));
+    this.failure = choice("Failure", cases.map((k) => element("option", {value: k}, k === 0 ? "no rotor failed" : `rotor ${k} failed`)));
     this.globe = element("canvas", {class: "globe", role: "img", tabindex: "0", "aria-label": "Globe; arrow keys turn it"});
     this.map = element("canvas", {class: "hammer", role: "img", "aria-label": "Equal-area map of all directions"});
     this.readout = element("output", {class: "facts"});
     this.low = element("span");
     this.high = element("span");
+    this.none = element("span", {class: "none"}, element("b", {style: `background: rgb(${kUndefined.join(" ")})`}), "cannot be had");
     const csv = element("button", {type: "button", "aria-label": "Download as CSV", onclick: () => download(part.name, this.table.csv())}, "CSV");
     this.node = element("section", {id: "part-" + index, "aria-label": this.title}, element("h2", {}, this.title),
-                        element("p", {class: "facts"}, `${this.table.rows} directions `, this.choice, csv),
+                        element("p", {class: "facts"}, `${this.table.rows} directions `, this.quantity, cases.length > 1 ? this.failure : undefined, csv),
                         element("div", {class: "sphere"}, this.globe, this.map),
-                        element("p", {class: "scale"}, this.low, element("i", {style: `background: ${cssGradient()}`}), this.high), this.readout);
+                        element("p", {class: "scale"}, this.low, element("i", {style: `background: ${cssGradient()}`}), this.high, this.none), this.readout);
     this.turnByHand();
     whenSeen(this.node, () => {
       this.draw();
@@ -108,7 +142,7 @@ export class SphereMap {
       const k = this.at(where((2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height));
       if (k < 0) return;
       const [x, y, z] = [this.directions.x[k], this.directions.y[k], this.directions.z[k]].map((v) => number(v, 3));
-      this.readout.textContent = `(${x}, ${y}, ${z}): ${number(this.values[k], 5)}`;
+      this.readout.textContent = `(${x}, ${y}, ${z}): ${withUnit(this.values[k], this.unit, 5)}`;
     });
     say(this.globe, (x, y) => this.seen(x, y));
     say(this.map, hammer);
@@ -127,34 +161,71 @@ export class SphereMap {
     return [out * Math.cos(this.turnZ) - x * Math.sin(this.turnZ), out * Math.sin(this.turnZ) + x * Math.cos(this.turnZ), up];
   }
 
-  paint(canvas, where) {
+  /// The inverse of `seen`, for the half that is in sight.
+  placeOnGlobe(x, y, z) {
+    const c = Math.cos(this.tilt), s = Math.sin(this.tilt);
+    const out = x * Math.cos(this.turnZ) + y * Math.sin(this.turnZ), across = -x * Math.sin(this.turnZ) + y * Math.cos(this.turnZ);
+    return out * c + z * s > 0 ? [across, z * c - out * s] : undefined;
+  }
+
+  /// `place` is the inverse of `where`: x, y in [-1, 1] of a direction, undefined where it is not seen.
+  paint(canvas, where, place) {
     const width = (canvas.width = Math.round(canvas.clientWidth)), height = (canvas.height = Math.round(canvas.clientHeight));
     if (width === 0) return;
     const context = canvas.getContext("2d"), image = context.createImageData(width, height);
     for (let row = 0; row < height; ++row) {
       for (let column = 0; column < width; ++column) {
         const k = this.at(where((2 * (column + 0.5)) / width - 1, 1 - (2 * (row + 0.5)) / height));
-        if (k < 0 || Number.isNaN(this.values[k])) continue;
-        image.data.set([...scaleColor((this.values[k] - this.least) / (this.most - this.least || 1)), 255], 4 * (row * width + column));
+        if (k < 0) continue;
+        const v = this.values[k];
+        const shade = Number.isNaN(v) ? kUndefined : scaleColor((v - this.least) / (this.most - this.least || 1));
+        image.data.set([...shade, 255], 4 * (row * width + column));
       }
     }
     context.putImageData(image, 0, 0);
+    this.paintAxes(context, width, height, place);
+  }
+
+  /// Dots where the body's axes pierce the sphere.
+  paintAxes(context, width, height, place) {
+    context.font = "12px system-ui, sans-serif";
+    context.textAlign = "center";
+    for (const [name, ...direction] of kAxes) {
+      const at = place(...direction);
+      if (at === undefined) continue;
+      const x = ((at[0] + 1) * width) / 2, y = ((1 - at[1]) * height) / 2;
+      context.beginPath();
+      context.arc(x, y, 2.5, 0, 2 * Math.PI);
+      context.fillStyle = context.strokeStyle = "#fff";
+      context.fill();
+      context.lineWidth = 3;
+      context.strokeStyle = "#0008";
+      const below = y < 22 ? 17 : -7, inside = Math.min(width - 10, Math.max(10, x));
+      context.strokeText(name, inside, y + below);
+      context.fillText(name, inside, y + below);
+    }
   }
 
   drawGlobe() {
-    this.paint(this.globe, (x, y) => this.seen(x, y));
+    this.paint(this.globe, (x, y) => this.seen(x, y), (x, y, z) => this.placeOnGlobe(x, y, z));
   }
 
   draw() {
-    this.values = this.table.numbers(this.quantities[this.choice.selectedIndex]);
+    const cases = this.columns.get(this.quantity.value);
+    this.unit = kQuantities[this.quantity.value]?.[1];
+    this.values = this.table.numbers(cases.get(Number(this.failure.value)) ?? [...cases.values()][0]);
     [this.least, this.most] = [Infinity, -Infinity];
-    for (const v of this.values) {
-      this.least = Math.min(this.least, v);
-      this.most = Math.max(this.most, v);
+    for (const column of cases.values()) {
+      for (const v of this.table.numbers(column)) {
+        if (v < this.least) this.least = v;
+        if (v > this.most) this.most = v;
+      }
     }
-    this.low.textContent = number(this.least, 4);
-    this.high.textContent = number(this.most, 4);
+    const isDefined = this.least <= this.most;
+    this.low.textContent = isDefined ? withUnit(this.least, this.unit, 4) : "–";
+    this.high.textContent = isDefined ? withUnit(this.most, this.unit, 4) : "–";
+    this.none.hidden = !this.values.some(Number.isNaN);
     this.drawGlobe();
-    this.paint(this.map, hammer);
+    this.paint(this.map, hammer, placeOnMap);
   }
 }
