@@ -4,7 +4,8 @@
 //     barrier gradient   -mu/(v - l) + mu/(u - v)            stiffness   Sigma = z_l/(v - l) + z_u/(u - v)
 //
 // The distances and their reciprocals are taken once for each point; both are 0 for an absent bound, so that no case is told apart in the
-// loops. An entry with l == u is fixed: it has no barrier and a stiffness of 1e30, which keeps its step at 0 without changing any structure.
+// loops and all of them run in vector registers. An entry with l == u is fixed: it has no barrier and a stiffness of 1e30, which keeps its
+// step at 0 without changing any structure.
 #pragma once
 
 #include <algorithm>
@@ -29,24 +30,30 @@ class BarrierBox {
   using Sides = BoxSides<Scalar, Dim>;
 
   explicit BarrierBox(int size) : lower_(size), upper_(size), lowest_(size), highest_(size), fixed_(size), free_(size) {
-    for (Sides* sides : {&distance_, &reciprocal_}) sides->lower.setZero(size), sides->upper.setZero(size);
+    for (Sides* sides : {&finite_, &anchor_, &distance_, &reciprocal_}) sides->lower.setZero(size), sides->upper.setZero(size);
   }
 
   /// Takes the bounds and moves v to fixed values.
   void set(const auto& lower, const auto& upper, auto&& v) {
+    const auto is_finite = [](Scalar bound) { return std::abs(bound) < kInfinity<Scalar>; };
     sides_ = 0;
     any_fixed_ = false;
     for (Eigen::Index i = 0; i < v.size(); ++i) {
-      const bool fixed = std::isfinite(lower[i]) && upper[i] - lower[i] <= 4 * margin(lower[i]);  // no room for an interior
+      const bool fixed = is_finite(lower[i]) && upper[i] - lower[i] <= 4 * margin(lower[i]);  // no room for an interior
+      const bool below = is_finite(lower[i]) && !fixed, above = is_finite(upper[i]) && !fixed;
       fixed_[i] = fixed ? Scalar(kFixedStiffness) : Scalar(0);
       free_[i] = fixed ? Scalar(0) : Scalar(1);
       lower_[i] = fixed ? -kInfinity<Scalar> : lower[i];
       upper_[i] = fixed ? kInfinity<Scalar> : upper[i];
-      if (fixed) v[i] = lower[i];
-      lowest_[i] = std::isfinite(lower_[i]) ? lower_[i] + margin(lower_[i]) : lower_[i];
-      highest_[i] = std::isfinite(upper_[i]) ? upper_[i] - margin(upper_[i]) : upper_[i];
+      v[i] = fixed ? lower[i] : v[i];
+      finite_.lower[i] = below ? Scalar(1) : Scalar(0);
+      finite_.upper[i] = above ? Scalar(1) : Scalar(0);
+      anchor_.lower[i] = below ? lower[i] : Scalar(0);
+      anchor_.upper[i] = above ? upper[i] : Scalar(0);
+      lowest_[i] = below ? lower[i] + margin(lower[i]) : -kInfinity<Scalar>;
+      highest_[i] = above ? upper[i] - margin(upper[i]) : kInfinity<Scalar>;
       any_fixed_ |= fixed;
-      sides_ += int(std::isfinite(lower_[i])) + int(std::isfinite(upper_[i]));
+      sides_ += int(below) + int(above);
     }
   }
 
@@ -79,41 +86,46 @@ class BarrierBox {
   Scalar log_barrier(const auto& v) const {
     if (sides_ == 0) return 0;
     Scalar sum = 0, product = 1;
-    const auto multiply = [&](Scalar distance) {
-      product *= distance;
+    const auto multiply = [&](Scalar factor) {
+      product *= factor;
       if (!(product > Scalar(kSmallest) && product < Scalar(kLargest))) {
         sum += std::log(product);
         product = 1;
       }
     };
-    for (Eigen::Index i = 0; i < v.size(); ++i) {
-      if (lower_[i] > -kInfinity<Scalar>) multiply(v[i] - lower_[i]);
-      if (upper_[i] < kInfinity<Scalar>) multiply(upper_[i] - v[i]);
-    }
+    // an absent side has the factor 1
+    const auto factors = [&](auto from, auto size) {
+      const auto part = [&](const auto& array) { return array.segment(from, size); };
+      return ((part(v) - part(anchor_.lower)) * part(finite_.lower) + (1 - part(finite_.lower))) *
+             ((part(anchor_.upper) - part(v)) * part(finite_.upper) + (1 - part(finite_.upper)));
+    };
+    const Eigen::Index size = v.size(), whole = size - size % kLanes;
+    for (Eigen::Index i = 0; i < whole; i += kLanes) multiply(factors(i, Eigen::fix<kLanes>).prod());
+    for (Eigen::Index i = whole; i < size; ++i) multiply(factors(i, Eigen::fix<1>).value());
     return sum + std::log(product);
   }
 
   /// From here on the box is seen from v, which is inside.
   void stand_at(const auto& v) {
     if (sides_ == 0) return;
-    reciprocal_.lower = 1 / (v - lower_);
-    reciprocal_.upper = 1 / (upper_ - v);
-    distance_.lower = (lower_ > -kInfinity<Scalar>).select(v - lower_, Scalar(0));
-    distance_.upper = (upper_ < kInfinity<Scalar>).select(upper_ - v, Scalar(0));
+    distance_.lower = (v - anchor_.lower) * finite_.lower;
+    distance_.upper = (anchor_.upper - v) * finite_.upper;
+    reciprocal_.lower = finite_.lower / (distance_.lower + (1 - finite_.lower));
+    reciprocal_.upper = finite_.upper / (distance_.upper + (1 - finite_.upper));
   }
 
   // --- multipliers --------------------------------------------------------------------------------------------------------------------------
 
   /// All multipliers of finite sides = value.
   void fill(Sides& z, Scalar value) const {
-    z.lower = (lower_ > -kInfinity<Scalar>).select(Array::Constant(lower_.size(), value), Scalar(0));
-    z.upper = (upper_ < kInfinity<Scalar>).select(Array::Constant(upper_.size(), value), Scalar(0));
+    z.lower = value * finite_.lower;
+    z.upper = value * finite_.upper;
   }
 
   /// Multipliers of a warm start: the given signed ones, and at least mu / distance, so that no product lies below mu.
   void split(const auto& signed_multiplier, Scalar mu, Sides& z) const {
-    z.lower = (lower_ > -kInfinity<Scalar>).select((-signed_multiplier).max(mu * reciprocal_.lower), Scalar(0));
-    z.upper = (upper_ < kInfinity<Scalar>).select(signed_multiplier.max(mu * reciprocal_.upper), Scalar(0));
+    z.lower = finite_.lower * (-signed_multiplier).max(mu * reciprocal_.lower);
+    z.upper = finite_.upper * signed_multiplier.max(mu * reciprocal_.upper);
   }
 
   /// Multipliers on the central path: every product = mu.
@@ -133,13 +145,8 @@ class BarrierBox {
 
   /// Largest |product - mu|.
   Scalar complementarity(const Sides& z, Scalar mu) const {
-    Scalar largest = 0;
-    if (sides_ == 0) return largest;
-    for (Eigen::Index i = 0; i < lower_.size(); ++i) {
-      if (lower_[i] > -kInfinity<Scalar>) largest = std::max(largest, std::abs(z.lower[i] * distance_.lower[i] - mu));
-      if (upper_[i] < kInfinity<Scalar>) largest = std::max(largest, std::abs(z.upper[i] * distance_.upper[i] - mu));
-    }
-    return largest;
+    if (sides_ == 0) return 0;
+    return (z.lower * distance_.lower - mu * finite_.lower).abs().max((z.upper * distance_.upper - mu * finite_.upper).abs()).maxCoeff();
   }
 
   Scalar sum_of_products(const Sides& z) const {
@@ -162,10 +169,8 @@ class BarrierBox {
     else sigma = z.lower * reciprocal_.lower + z.upper * reciprocal_.upper + fixed_;
   }
 
-  /// gradient += -t_l/(v - l) + t_u/(u - v),  t the product that each side aims at: mu, or corrected().
-  void add_barrier_gradient(const Sides& t, auto&& gradient) const {
-    if (sides_ > 0) gradient += t.upper * reciprocal_.upper - t.lower * reciprocal_.lower;
-  }
+  /// -t_l/(v - l) + t_u/(u - v), as an expression; t: the product that each side aims at.
+  auto barrier_gradient(const Sides& t) const { return t.upper * reciprocal_.upper - t.lower * reciprocal_.lower; }
 
   /// t = mu
   void aim_at(Scalar mu, Sides& t) const {
@@ -204,17 +209,16 @@ class BarrierBox {
 
   Scalar max_multiplier_step(const Sides& z, const Sides& dz, Scalar tau) const {
     if (sides_ == 0) return 1;
-    Scalar inverse = tau;
-    for (Eigen::Index i = 0; i < z.lower.size(); ++i) {
-      if (-dz.lower[i] > inverse * z.lower[i] && z.lower[i] > 0) inverse = -dz.lower[i] / z.lower[i];
-      if (-dz.upper[i] > inverse * z.upper[i] && z.upper[i] > 0) inverse = -dz.upper[i] / z.upper[i];
-    }
+    // likewise: 1/a is the largest of -dz/z; an absent side has z = dz = 0
+    constexpr Scalar kTiny = std::numeric_limits<Scalar>::min();
+    const Scalar inverse = (-dz.lower / z.lower.max(kTiny)).max(-dz.upper / z.upper.max(kTiny)).maxCoeff();
     return inverse > tau ? tau / inverse : Scalar(1);
   }
 
  private:
-  static constexpr double kSmallest = sizeof(Scalar) == 8 ? 1e-250 : 1e-30;
-  static constexpr double kLargest = sizeof(Scalar) == 8 ? 1e250 : 1e30;
+  static constexpr double kSmallest = sizeof(Scalar) == 8 ? 1e-150 : 1e-20;
+  static constexpr double kLargest = sizeof(Scalar) == 8 ? 1e150 : 1e20;
+  static constexpr int kLanes = sizeof(Scalar) == 8 ? 4 : 2;  // so many at once leave the range of a product in that of Scalar
 
   static Scalar margin(Scalar bound) { return 4 * std::numeric_limits<Scalar>::epsilon() * std::max(Scalar(1), std::abs(bound)); }
 
@@ -222,6 +226,7 @@ class BarrierBox {
   Array lowest_, highest_;       // the same, a few units of rounding inside
   Array fixed_;                  // 0, or kFixedStiffness
   Array free_;                   // 1, or 0
+  Sides finite_, anchor_;        // 1 and the bound where there is one, else 0
   Sides distance_, reciprocal_;  // of the point where the box is seen from; 0 where there is no bound
   int sides_ = 0;
   bool any_fixed_ = false;

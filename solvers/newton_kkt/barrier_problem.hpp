@@ -10,6 +10,7 @@
 
 #include "tenon/core/point.hpp"
 #include "tenon/solvers/newton_kkt/iterate.hpp"
+#include "tenon/solvers/newton_kkt/transposed_product.hpp"
 
 namespace tenon {
 
@@ -47,6 +48,7 @@ class BarrierProblem {
         x_box_(n_),
         s_box_(m_),
         jacobian_(zero_jacobian(problem)),
+        transposed_product_(product_of(problem)),
         hessian_(zero_hessian(problem)) {
     gradient_.setZero(n_);
     stationarity_.setZero(n_);
@@ -93,7 +95,7 @@ class BarrierProblem {
     problem_.prepare(at.x, workspace_);
     at.objective = problem_.objective(at.x, workspace_);
     problem_.constraints(at.x, workspace_, at.constraints);
-    return std::isfinite(at.objective) && at.constraints.allFinite();
+    return std::isfinite(at.objective) && all_finite(at.constraints);
   }
 
   /// Brings the shared workspace back to `at` after trial points elsewhere.
@@ -106,12 +108,13 @@ class BarrierProblem {
     problem_.gradient(at.x, workspace_, gradient_);
     problem_.jacobian(at.x, workspace_, values_of(jacobian_));
     update_stationarity(at);
-    return stationarity_.allFinite();
+    return all_finite(stationarity_);
   }
 
   void update_stationarity(const Iterate<P>& at) {
     stationarity_ = gradient_;
-    stationarity_.noalias() += jacobian_.transpose() * at.lambda;
+    if constexpr (kFixedSize<P>) stationarity_.noalias() += jacobian_.transpose() * at.lambda;
+    else transposed_product_.add(jacobian_, at.lambda, stationarity_);
   }
 
   void evaluate_hessian(const Iterate<P>& at) { problem_.hessian(at.x, Scalar(1), at.lambda, workspace_, values_of(hessian_)); }
@@ -221,6 +224,12 @@ class BarrierProblem {
     if constexpr (kFixedSize<P>) return JacobianOf<P>::Zero();
     else return problem.jacobian_pattern().zero_matrix();
   }
+  struct Nothing {};
+  using Product = std::conditional_t<kFixedSize<P>, Nothing, TransposedProduct>;
+  static Product product_of(const P& problem) {
+    if constexpr (kFixedSize<P>) return {};
+    else return TransposedProduct(problem.jacobian_pattern());
+  }
   static HessianOf<P> zero_hessian(const P& problem) {
     if constexpr (kFixedSize<P>) return HessianOf<P>{};
     else return problem.hessian_pattern().zero_matrix();
@@ -236,6 +245,7 @@ class BarrierProblem {
   bool compliant_ = false, all_compliant_ = false;
   VectorN gradient_, stationarity_;
   JacobianOf<P> jacobian_;
+  Product transposed_product_;  // of sparse Jacobians
   HessianOf<P> hessian_;
 };
 

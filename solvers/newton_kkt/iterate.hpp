@@ -34,6 +34,12 @@ struct Iterate : Step<P> {
   Iterate(int n, int m) : Step<P>(n, m) { constraints.setZero(m); }
 };
 
+/// Whether every entry is a finite number: 0 v is 0 for no other. As a sum it runs in vector registers, which Eigen's allFinite does not.
+bool all_finite(const auto& v) {
+  using Scalar = typename std::decay_t<decltype(v)>::Scalar;
+  return (v.array() * Scalar(0)).sum() == 0;
+}
+
 /// Bound multipliers of `to` = those of `from` + alpha times the step's.
 template <class P>
 void take_dual_step(const Iterate<P>& from, const Step<P>& step, typename P::Scalar alpha, Iterate<P>& to) {

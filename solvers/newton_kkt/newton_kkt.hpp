@@ -209,7 +209,7 @@ class NewtonKkt {
 
   /// A predicted step need not be one of descent: it is taken at full length or not at all.
   bool search() {
-    if (!step_.x.allFinite() || !step_.lambda.allFinite()) return false;
+    if (!all_finite(step_.x) || !all_finite(step_.lambda)) return false;
     if (predicted_) {
       if (line_search_.try_full(barrier_, *now_, step_, alpha_.primal, alpha_.dual, mu_.value(), *trial_)) return true;
       system_.step(barrier_, *now_, mu_.value(), step_);

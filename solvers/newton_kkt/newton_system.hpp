@@ -23,8 +23,8 @@ class NewtonSystem {
 
   explicit NewtonSystem(const P& problem) : kkt_(make_kkt<Kkt>(problem)) {
     const int n = problem.num_variables(), m = problem.num_constraints();
-    for (VectorN* v : {&sigma_x_, &r_x_, &rhs_x_}) v->setZero(n);
-    for (VectorM* v : {&give_s_, &d_, &r_s_, &r_c_, &rhs_c_}) v->setZero(m);
+    for (VectorN* v : {&sigma_x_, &rhs_x_}) v->setZero(n);
+    for (VectorM* v : {&give_s_, &d_, &r_s_, &rhs_c_}) v->setZero(m);
     aim_x_.lower.setZero(n), aim_x_.upper.setZero(n);
     aim_s_.lower.setZero(m), aim_s_.upper.setZero(m);
   }
@@ -67,22 +67,23 @@ class NewtonSystem {
 
   /// The last step again with another row residual: a second-order correction.  [WB06, eq. 26]
   void corrected_step(const BarrierProblem<P>& barrier, const Iterate<P>& at, const VectorM& row_residual, Step<P>& step) {
-    r_c_ = row_residual;
-    solve(barrier, at, step);
+    solve(barrier, at, row_residual, step);
   }
 
-  /// Least-squares multipliers of a cold start: H = I, every row's slack with unit stiffness.  [WB06, sec. 3.6]
+  /// Least-squares multipliers of a cold start: H = I, every row's slack with unit stiffness. False where there are none but 0.
+  /// [WB06, sec. 3.6]
   bool least_squares_multipliers(BarrierProblem<P>& barrier, Iterate<P>& at) {
+    rhs_x_ = -(barrier.x_box().free_mask() * (barrier.gradient().array() + at.zx.upper - at.zx.lower)).matrix();
+    rhs_c_ = -(barrier.s_box().free_mask() * (at.zs.upper - at.zs.lower)).matrix();
+    if ((rhs_x_.array() == 0).all() && (rhs_c_.array() == 0).all()) return false;  // nothing to balance
     set_zero(barrier.hessian());
     sigma_x_ = (barrier.x_box().fixed_stiffness() + 1).matrix();
     d_ = barrier.s_box().free_mask().matrix();
     const Inertia inertia = kkt_.factor(barrier.hessian(), barrier.jacobian(), sigma_x_, d_);
     if (inertia.zero > 0) return false;
-    rhs_x_ = -(barrier.x_box().free_mask() * (barrier.gradient().array() + at.zx.upper - at.zx.lower)).matrix();
-    rhs_c_ = -(barrier.s_box().free_mask() * (at.zs.upper - at.zs.lower)).matrix();
-    kkt_.solve(rhs_x_, rhs_c_, r_x_, at.lambda);  // r_x_ takes the primal part, which nobody needs
+    kkt_.solve(rhs_x_, rhs_c_, sigma_x_, at.lambda);  // sigma_x_ takes the primal part, which nobody needs
     constexpr Scalar kLargest = 1000;
-    return at.lambda.allFinite() && (at.lambda.size() == 0 || at.lambda.template lpNorm<Eigen::Infinity>() <= kLargest);
+    return all_finite(at.lambda) && (at.lambda.size() == 0 || at.lambda.template lpNorm<Eigen::Infinity>() <= kLargest);
   }
 
  private:
@@ -100,18 +101,13 @@ class NewtonSystem {
   }
 
   void aimed_step(const BarrierProblem<P>& barrier, const Iterate<P>& at, Step<P>& step) {
-    r_x_ = barrier.stationarity();
-    barrier.x_box().add_barrier_gradient(aim_x_, r_x_.array());
-    if (barrier.x_box().any_fixed()) r_x_.array() *= barrier.x_box().free_mask();
-    r_s_ = -at.lambda;
-    barrier.s_box().add_barrier_gradient(aim_s_, r_s_.array());
-    r_c_ = barrier.row_residual(at);
-    solve(barrier, at, step);
+    rhs_x_ = -(barrier.x_box().free_mask() * (barrier.stationarity().array() + barrier.x_box().barrier_gradient(aim_x_))).matrix();
+    r_s_ = (barrier.s_box().barrier_gradient(aim_s_) - at.lambda.array()).matrix();
+    solve(barrier, at, barrier.row_residual(at), step);
   }
 
-  void solve(const BarrierProblem<P>& barrier, const Iterate<P>& at, Step<P>& step) {
-    rhs_x_ = -r_x_;
-    rhs_c_ = -(r_c_ + give_s_.cwiseProduct(r_s_));
+  void solve(const BarrierProblem<P>& barrier, const Iterate<P>& at, const auto& row_residual, Step<P>& step) {
+    rhs_c_ = -(row_residual + give_s_.cwiseProduct(r_s_));
     kkt_.solve(rhs_x_, rhs_c_, step.x, step.lambda);
     if (barrier.x_box().any_fixed()) step.x.array() *= barrier.x_box().free_mask();
     step.s = give_s_.cwiseProduct(step.lambda - r_s_);
@@ -125,8 +121,8 @@ class NewtonSystem {
   Scalar delta_w_ = 0;
   BoxSides<Scalar, P::kVariables> aim_x_;
   BoxSides<Scalar, P::kConstraints> aim_s_;
-  VectorN sigma_x_, r_x_, rhs_x_;
-  VectorM give_s_, d_, r_s_, r_c_, rhs_c_;
+  VectorN sigma_x_, rhs_x_;
+  VectorM give_s_, d_, r_s_, rhs_c_;
 };
 
 }  // namespace tenon

@@ -1,6 +1,7 @@
 // Values into the blocks, and vectors between the order of the problem and that of the stages.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "tenon/solvers/newton_kkt/stage_products.hpp"
 #include "tenon/solvers/newton_kkt/stage_system.hpp"
@@ -18,12 +19,40 @@ int padded(int n) {
 }  // namespace
 
 bool StageSystem::assemble(const SparseMatrix& hessian, const SparseMatrix& jacobian, ConstVectorRef sigma, ConstVectorRef d) {
-  const Eigen::Map<const Vector> h(hessian.valuePtr(), hessian.nonZeros()), j(jacobian.valuePtr(), jacobian.nonZeros());
-  if (!std::isfinite(h.sum() + j.sum() + sigma.sum() + d.sum())) return false;
+  const Eigen::Map<const Vector> h(hessian.valuePtr(), hessian.nonZeros());
+  if (!std::isfinite(h.sum() + sigma.sum() + d.sum())) return false;
   double* to = arena_.data();
   for (std::size_t e = 0; e < hessian_places_.size(); ++e) to[hessian_places_[e].first] = to[hessian_places_[e].mirror] = h[e];
   for (const int place : bare_diagonals_) to[place] = 0;
   for (std::size_t i = 0; i < diagonal_places_.size(); ++i) to[diagonal_places_[i]] += sigma[i];
+  std::swap(fixed_, fixed_before_);
+  find_fixed(sigma);
+  const bool is_new = !holds(jacobian);
+  if (is_new && !place(jacobian)) return false;
+  for (std::size_t row = 0; row < row_places_.size(); ++row) compliance_[row_places_[row]] = d[row];
+  if (scaled_) compliance_.array() *= row_scale_.array().square();
+  for (const int variable : fixed_) take_out(variable);
+  if (is_new) {
+    for (const StageBlocks& b : stages_) {
+      stage::transpose(b.a_s, b.next_stride, b.next_states, b.states, b.at_s, b.state_stride);
+      stage::transpose(b.a_l, b.next_stride, b.next_states, b.locals, b.at_l, b.local_stride);
+    }
+  }
+  return true;
+}
+
+// Whether the blocks hold these values, with these variables taken out: where rows are linear, they do at every iterate but the first.
+bool StageSystem::holds(const SparseMatrix& jacobian) const {
+  return holds_jacobian_ && fixed_ == fixed_before_ &&
+         std::memcmp(jacobian.valuePtr(), placed_.data(), sizeof(double) * static_cast<std::size_t>(placed_.size())) == 0;
+}
+
+bool StageSystem::place(const SparseMatrix& jacobian) {
+  const Eigen::Map<const Vector> j(jacobian.valuePtr(), jacobian.nonZeros());
+  holds_jacobian_ = std::isfinite(j.sum());
+  if (!holds_jacobian_) return false;
+  placed_ = j;
+  double* to = arena_.data();
   for (const Run& run : jacobian_runs_) {
     for (int e = 0; e < run.length; ++e) to[run.place + e] = j[run.source + e];
   }
@@ -37,13 +66,6 @@ bool StageSystem::assemble(const SparseMatrix& hessian, const SparseMatrix& jaco
     scaled_ |= row_scale_[place] != 1;
   }
   if (scaled_) scale_dynamics();
-  for (std::size_t row = 0; row < row_places_.size(); ++row) compliance_[row_places_[row]] = d[row];
-  if (scaled_) compliance_.array() *= row_scale_.array().square();
-  if (any_fixed_ || sigma.maxCoeff() >= kFixed) take_out_fixed(sigma);
-  for (const StageBlocks& b : stages_) {
-    stage::transpose(b.a_s, b.next_stride, b.next_states, b.states, b.at_s, b.state_stride);
-    stage::transpose(b.a_l, b.next_stride, b.next_states, b.locals, b.at_l, b.local_stride);
-  }
   return true;
 }
 
@@ -57,18 +79,18 @@ void StageSystem::scale_dynamics() {
   }
 }
 
-// A variable held by sigma = 1e30 leaves the system: its row and column become those of the identity, its right-hand side 0.
-void StageSystem::take_out_fixed(ConstVectorRef sigma) {
-  std::ranges::fill(fixed_state_, 0);
+void StageSystem::find_fixed(ConstVectorRef sigma) {
   fixed_.clear();
+  std::ranges::fill(fixed_states_, 0);
+  if (!(sigma.maxCoeff() >= kFixed)) return;
   for (int i = 0; i < n_; ++i) {
     if (sigma[i] < kFixed) continue;
     fixed_.push_back(i);
-    take_out(i);
+    if (homes_[i].state >= 0) ++fixed_states_[homes_[i].stage];
   }
-  any_fixed_ = !fixed_.empty();
 }
 
+// A variable held by sigma = 1e30 leaves the system: its row and column become those of the identity, its right-hand side 0.
 void StageSystem::take_out(int variable) {
   const Home home = homes_[variable];
   const bool global = home.state >= stage(home.stage).states - globals_;
@@ -101,7 +123,6 @@ void StageSystem::take_out(int variable) {
       for (int j = 0; j < before.states && !before.is_explicit; ++j) before.h_ns[home.state + j * stride] = 0;
       for (int j = 0; j < before.locals && !before.is_explicit; ++j) before.h_nl[home.state + j * stride] = 0;
     }
-    if (home.state >= 0) fixed_state_[home.stage] = 1;
   }
   arena_[diagonal_places_[variable]] = 1;
 }

@@ -1,6 +1,6 @@
 // Elimination of a regular stage: the next state by the dynamics, the locals by a Cholesky-like L D L', as in the Riccati recursion.
 //
-//     M = H + A' P A + C' D^-1 C,     M_ll = L D L',   G = M_sl L^-T D^-1,     P <- M_ss - G D G'                    stage_kkt.md (2.3)
+//     M = H + A' P A + C' D^-1 C,     M_ll = L D L',   G = M_sl L^-T D^-1,     P <- M_ss - G D G',     K' = G L^-1     stage_kkt.md (2.3)
 //
 // P on the right belongs to the next stage, on the left to this one. Sizes are constants, or Dynamic and taken from the stage.
 #pragma once
@@ -50,31 +50,36 @@ class RegularStage {
           tile.write(b_.value + i + j * state_stride(), state_stride());
         });
     stage::symmetrise(b_.value, state_stride(), states());
+    finish_gain();
     return true;
   }
 
-  /// rhs: in; value_rhs: what the later stages leave of it, at the state, and L^-1 of it at the locals. (2.4)
+  /// rhs: in; value_rhs: what the later stages leave of it, at the state, and M_ll^-1 of it at the locals. (2.4)
   void backward(const double* next_value, const double* next_rhs, const double* d, const double* rhs, double* value_rhs,
                 double* scratch) const {
-    double *q = scratch, *y = scratch + next_stride();
+    double* q = scratch;
     copy(next_rhs, q, next());
     stage::add_times(next_value, next_stride(), rhs + b_.at_dynamics, next(), next(), q);
     double* l = value_rhs + b_.at_l_vector;
     double* s = value_rhs + b_.at_s_vector;
-    copy(rhs + b_.at_l_vector, y, locals());
+    copy(rhs + b_.at_l_vector, l, locals());
     copy(rhs + b_.at_s_vector, s, states());
-    stage::add_times(b_.at_l, local_stride(), q, locals(), next(), y);
+    stage::add_times(b_.at_l, local_stride(), q, locals(), next(), l);
     stage::add_times(b_.at_s, state_stride(), q, states(), next(), s);
     for (int r = 0; r < rows(); ++r) {
       const double pull = rhs[b_.at_rows + r] / d[r];
-      stage::add_times(b_.c_l + r * local_stride(), local_stride(), &pull, locals(), 1, y);
+      stage::add_times(b_.c_l + r * local_stride(), local_stride(), &pull, locals(), 1, l);
       stage::add_times(b_.c_s + r * state_stride(), state_stride(), &pull, states(), 1, s);
     }
+    stage::add_times(b_.gain, state_stride(), l, states(), locals(), s, -1);
     for (int j = 0; j < locals(); ++j) {
-      for (int i = j + 1; i < locals(); ++i) y[i] -= b_.l_ll[i + j * local_stride()] * y[j];
+      for (int i = j + 1; i < locals(); ++i) l[i] -= b_.l_ll[i + j * local_stride()] * l[j];
     }
-    copy(y, l, locals());
-    stage::add_times(b_.gain, state_stride(), y, states(), locals(), s, -1);
+    for (int j = locals() - 1; j >= 0; --j) {
+      double sum = l[j] * b_.d_inverse[j];
+      for (int i = j + 1; i < locals(); ++i) sum -= b_.l_ll[i + j * local_stride()] * l[i];
+      l[j] = sum;
+    }
   }
 
   /// Locals, next state and multipliers, from the state in `solution`. (2.5)
@@ -82,10 +87,8 @@ class RegularStage {
                double* next_state, double* solution, double* scratch) const {
     const double* s = solution + b_.at_s_vector;
     double* l = solution + b_.at_l_vector;
-    for (int j = locals() - 1; j >= 0; --j) {
-      double sum = value_rhs[b_.at_l_vector + j] * b_.d_inverse[j] - lanes::dot(b_.gain + j * state_stride(), s, 0, states());
-      for (int i = j + 1; i < locals(); ++i) sum -= b_.l_ll[i + j * local_stride()] * l[i];
-      l[j] = sum;
+    for (int j = 0; j < locals(); ++j) {
+      l[j] = value_rhs[b_.at_l_vector + j] - lanes::dot(b_.gain + j * state_stride(), s, 0, states());
     }
     double* lambda = solution + b_.at_dynamics;
     double* ahead = scratch;
@@ -185,6 +188,13 @@ class RegularStage {
       for (int i = j + 1; i < locals(); ++i) column[i] *= inverse;
     }
     return true;
+  }
+  // gain: G becomes K'
+  void finish_gain() const {
+    for (int j = locals() - 2; j >= 0; --j) {
+      stage::add_times(b_.gain + (j + 1) * state_stride(), state_stride(), b_.l_ll + (j + 1) + j * local_stride(), states(),
+                       locals() - j - 1, b_.gain + j * state_stride(), -1);
+    }
   }
   /// Size of the numbers whose sum is a diagonal entry of M_ll.
   double magnitude(int j) const {

@@ -87,7 +87,13 @@ void StageFronts::factor(int k, const StageSystem& system, Inertia& inertia) {
   Record& r = record(k);
   const int from_next = k + 1 < system.size() ? record(k + 1).left_over : 0;
   if (k < 0) {
-    r.columns = r.rows = system.stage(0).states + from_next;
+    const int states = system.stage(0).states;
+    if (from_next == 0 && system.first_state_is_fixed()) {
+      r.columns = r.rows = r.eliminated = r.left_over = 0;
+      inertia.positive += states;
+      return;
+    }
+    r.columns = r.rows = states + from_next;
   } else {
     const StageBlocks& b = system.stage(k);
     r.columns = b.own_next_states + from_next + b.locals + (b.is_explicit ? b.own_next_states : 0) + b.rows;
@@ -283,6 +289,7 @@ void StageFronts::forward(int k, const StageSystem& system, const double* value_
   const double* panel = arena_.at(r.panel);
   for (int j = r.eliminated - 1; j >= 0; --j) t[j] -= lanes::dot(panel + static_cast<std::ptrdiff_t>(j) * stride, t, j + 1, r.rows);
   for (int j = 0; j < r.eliminated; ++j) solution[ids[j]] = at.scale[j] * t[j];
+  if (k < 0 && r.columns == 0) std::fill_n(solution + system.stage(0).at_s_vector, system.stage(0).states, 0.0);
   if (k < 0 || system.globals() == 0 || k + 1 == system.size()) return;
 
   // the globals' copy at the next stage, and the multiplier that holds it:  P z - p of that stage

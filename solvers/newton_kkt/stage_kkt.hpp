@@ -31,6 +31,7 @@ class StageKkt {
 
   /// hessian, jacobian: with these patterns; sigma: n, >= 0, 1e30 where a variable is held; d: m, >= 0.
   Inertia factor(const SparseMatrix& hessian, const SparseMatrix& jacobian, ConstVectorRef sigma, ConstVectorRef d) {
+    trusted_ = false;
     finite_ = system_.assemble(hessian, jacobian, sigma, d);
     if (!finite_) return {0, 0, system_.n() + system_.m()};
     Inertia inertia;
@@ -50,7 +51,8 @@ class StageKkt {
     return inertia;
   }
 
-  /// K [dx; dlambda] = [r_x; r_c]; a held variable has dx = 0. Returns the largest residual relative to the largest right-hand side.
+  /// K [dx; dlambda] = [r_x; r_c]; a held variable has dx = 0. Returns the largest residual relative to the largest right-hand side; 0 where
+  /// it is not measured, since the factors have solved another right-hand side without refinement.
   double solve(ConstVectorRef r_x, ConstVectorRef r_c, VectorRef dx, VectorRef dlambda) {
     if (!finite_) {
       dx.setZero(), dlambda.setZero();
@@ -59,8 +61,13 @@ class StageKkt {
     system_.gather(r_x, r_c, rhs_.data());
     const double rhs_size = rhs_.lpNorm<Eigen::Infinity>();
     solve(rhs_, solution_);
+    if (trusted_) {
+      system_.scatter(solution_.data(), dx, dlambda);
+      return 0;
+    }
     const double size = rhs_size + solution_.lpNorm<Eigen::Infinity>();
     double error = measure();
+    trusted_ = error <= kAccuracy * size;
     for (int step = 0; step < kRefinements && error > kAccuracy * size; ++step) {
       solve(residual_, correction_);
       solution_ += correction_;
@@ -171,7 +178,7 @@ class StageKkt {
   StageSystem system_;
   StageFronts fronts_;
   std::vector<char> regular_;
-  bool finite_ = false;
+  bool finite_ = false, trusted_ = false;
   Vector scratch_, rhs_, value_rhs_, solution_, correction_, residual_, nothing_;
 };
 

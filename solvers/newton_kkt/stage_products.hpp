@@ -63,6 +63,11 @@ struct Tile {
       }
     }
   }
+  [[gnu::always_inline]] void operator+=(const Tile& other) {
+    for (int j = 0; j < Columns; ++j) {
+      for (int i = 0; i < kRows; ++i) sum[j][i] = Eigen::internal::padd(sum[j][i], other.sum[j][i]);
+    }
+  }
   [[gnu::always_inline]] void write(double* c, int stride) const {
     for (int j = 0; j < Columns; ++j) {
       for (int i = 0; i < kRows; ++i) detail::store(c + j * stride + i * detail::kPacket, sum[j][i]);
@@ -110,14 +115,18 @@ template <class Visit>
       });
 }
 
-/// y += sign a x: rows in whole lanes.
+/// y += sign a x: rows in whole lanes. Even and odd columns are summed apart, so that the sums need not wait for one another.
 [[gnu::always_inline]] inline void add_times(const double* a, int stride, const double* x, int rows, int columns, double* y,
                                              double sign = 1) {
   over_lanes<1>(
-      0, lanes::padded<double>(rows), 0, [&](auto tile, int i, int) __attribute__((always_inline)) {
-        tile.read(y + i, 0);
-        tile.add(a + i, stride, {x, 1, 0}, columns, sign);
-        tile.write(y + i, 0);
+      0, lanes::padded<double>(rows), 0, [&](auto even, int i, int) __attribute__((always_inline)) {
+        auto odd = even;
+        even.read(y + i, 0);
+        odd.clear();
+        even.add(a + i, 2 * stride, {x, 2, 0}, (columns + 1) / 2, sign);
+        odd.add(a + i + stride, 2 * stride, {x + 1, 2, 0}, columns / 2, sign);
+        even += odd;
+        even.write(y + i, 0);
       });
 }
 

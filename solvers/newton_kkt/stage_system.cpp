@@ -24,8 +24,9 @@ StageSystem::StageSystem(const Stages& stages, const SparsePattern& hessian, con
   reserve();
   place_hessian(hessian);
   place_jacobian(jacobian);
-  fixed_state_.assign(stages_.size(), 0);
-  fixed_.reserve(static_cast<std::size_t>(n_));
+  fixed_states_.assign(stages_.size(), 0);
+  for (auto* fixed : {&fixed_, &fixed_before_}) fixed->reserve(static_cast<std::size_t>(n_));
+  placed_.setZero(jacobian.nonzeros());
 }
 
 // States of a stage: what the rows of the stage before touch. Those of the first stage, which no row touches, are chosen like the second's.

@@ -30,7 +30,7 @@ struct StageBlocks {
   double *c_s = nullptr, *c_l = nullptr, *c_n = nullptr;                    // transposed other rows: one column each
   double *h_ns = nullptr, *h_nl = nullptr;                                  // Hessian between the next state and this stage (not explicit)
   double* value = nullptr;                                                  // P: what the stages from here on add to the state's Hessian
-  double *gain = nullptr, *l_ll = nullptr, *d_inverse = nullptr;            // factor of the locals: M_ll = L D L', gain = M_sl L^-T D^-1
+  double *gain = nullptr, *l_ll = nullptr, *d_inverse = nullptr;            // factor of the locals: M_ll = L D L', gain = M_sl M_ll^-1
 
   int at_l_vector = 0, at_s_vector = 0, at_dynamics = 0, at_rows = 0;  // where l, s, the dynamics and the other rows are in a vector
 };
@@ -56,8 +56,8 @@ class StageSystem {
   const double* compliance() const { return compliance_.data(); }
   /// Coupling of each row of dynamics to its next state: -1, or 0 where that is fixed.
   const double* link() const { return link_.data(); }
-  /// Whether a state of stage k is fixed.
-  bool has_fixed_state(int k) const { return fixed_state_[k]; }
+  /// Whether all states of the first stage are fixed: nothing is left to solve for when the others are eliminated.
+  bool first_state_is_fixed() const { return fixed_states_[0] == stage(0).states; }
 
   /// Right-hand sides and solutions between the order of the problem and that of the stages.
   void gather(ConstVectorRef r_x, ConstVectorRef r_c, double* vector) const;
@@ -78,8 +78,10 @@ class StageSystem {
   void reserve();
   void place_hessian(const SparsePattern& hessian);
   void place_jacobian(const SparsePattern& jacobian);
+  bool holds(const SparseMatrix& jacobian) const;
+  bool place(const SparseMatrix& jacobian);
   void scale_dynamics();
-  void take_out_fixed(ConstVectorRef sigma);
+  void find_fixed(ConstVectorRef sigma);
   void take_out(int variable);
   int offset(const double* place) const { return static_cast<int>(place - arena_.data()); }
 
@@ -100,11 +102,12 @@ class StageSystem {
   std::vector<Link> links_;
   std::vector<int> diagonal_places_, bare_diagonals_;
   std::vector<int> variable_places_, row_places_;  // in a vector
-  std::vector<char> fixed_state_;
-  std::vector<int> fixed_;
+  std::vector<int> fixed_states_;  // of each stage: how many
+  std::vector<int> fixed_, fixed_before_;
   int vector_size_ = 0;
   Vector compliance_, link_, row_scale_;
-  bool scaled_ = false, any_fixed_ = false;
+  Vector placed_;  // the Jacobian's values that the blocks hold
+  bool scaled_ = false, holds_jacobian_ = false;
 };
 
 }  // namespace tenon
