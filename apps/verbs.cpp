@@ -8,6 +8,7 @@ int run_check(const Arguments&);
 int run_compare(const Arguments&);
 int run_fit(const Arguments&);
 int run_list(const Arguments&);
+int run_plan(const Arguments&);
 int run_report(const Arguments&);
 int run_robot(const Arguments&);
 int run_simulate(const Arguments&);
@@ -39,6 +40,13 @@ const std::vector<Verb>& verbs() {
        1,
        {"output", "events", "report", "fast-phase", "solver", "set", "tolerance", "json", "quiet", "real-time"},
        &run_simulate},
+      {"plan",
+       "one trajectory of a scene by direct collocation",
+       "SCENE",
+       1,
+       1,
+       {"output", "report", "trace", "solver", "set", "tolerance", "max-iterations", "time-limit", "json", "quiet", "verbose"},
+       &run_plan},
       {"solve",
        "one nonlinear program",
        "PROBLEM",

@@ -199,8 +199,8 @@ OcpScene make(const OcpModelInput& in) {
 
 OcpModel push_and_slide_model() {
   return {.name = "push-and-slide",
-          .parameters = {{"finger_mass", 0.5}, {"block_mass", 0.3}, {"friction", 0.3}, {"slip_speed", 0.02}, {"gravity", 9.81}, {"rate", 10}, {"stiffness", 2e3},
-                         {"softness", 1e-3}, {"largest_force", 20}, {"epsilon", 1e-5}, {"clearance", 0.05}, {"distance", 0.3}, {"time_weight", 1}},
+          .parameters = {{"finger_mass", 0.5}, {"block_mass", 0.3}, {"friction", 0.3}, {"slip_speed", 0.05}, {"gravity", 9.81}, {"rate", 10}, {"stiffness", 300},
+                         {"softness", 2e-3}, {"largest_force", 20}, {"epsilon", 1e-5}, {"clearance", 0.05}, {"distance", 0.3}, {"time_weight", 1}},
           .contacts = {"complementarity", "phases", "baumgarte", "law"},
           .duration = 1.5,
           .intervals = 30,
