@@ -22,6 +22,7 @@ namespace tenon {
 namespace {
 
 constexpr int kRowsOfAnInterval = 5;
+constexpr std::size_t kSentencesShown = 8;
 
 /// What a phase took: its intervals, and when it is over.
 struct PhaseSummary {
@@ -108,7 +109,9 @@ std::string text_of(const OcpScene& scene, const PlannerOutcome& outcome, const 
   line("at the end", fmt::format("{:.2g} in {}, open loop", end, scene.ocp.dae->state_name(static_cast<int>(worst))));
   line("residual", fmt::format("stationarity {:.2e}, primal {:.2e}, complementarity {:.2e}", result.residual.stationarity, result.residual.primal,
                                result.residual.complementarity));
-  text += explain(*outcome.program, outcome.point, result).text();
+  const std::vector<std::string> sentences = explain(*outcome.program, outcome.point, result).sentences;
+  for (std::size_t k = 0; k < std::min(sentences.size(), kSentencesShown); ++k) text += sentences[k] + "\n";
+  if (sentences.size() > kSentencesShown) text += fmt::format("  and {} more: see --json\n", sentences.size() - kSentencesShown);
   if (!next_step(result.status).empty()) line("next", std::string(next_step(result.status)));
   return text;
 }

@@ -4,6 +4,11 @@
 
 namespace tenon {
 
+namespace {
+// A plan on a coarser mesh is near the answer, but has no multipliers for the finer one: they begin as mu over the distance of each bound.
+constexpr double kWarmMu = 1e-3;
+}  // namespace
+
 PlannerOutcome make_plan(const Ocp& ocp, const SolverFactory& make_solver, const PlannerOptions& options) {
   PlannerOutcome out;
   Mesh mesh = uniform_mesh(ocp);
@@ -14,7 +19,9 @@ PlannerOutcome make_plan(const Ocp& ocp, const SolverFactory& make_solver, const
       program->initial_point(point.x);
     else
       program->point_of(out.plan, point.x);
-    out.result = make_solver(*program, options.solver)->solve(point);
+    Options of_solver = options.solver;
+    if (out.refinements > 0) of_solver.warm_start = true, of_solver.initial_mu = kWarmMu;
+    out.result = make_solver(*program, of_solver)->solve(point);
     out.iterations += out.result.iterations;
     out.elapsed += out.result.elapsed;
     out.program = std::move(program);
