@@ -7,15 +7,16 @@
 #include <stdexcept>
 
 #include "tenon/apps/json.hpp"
+#include "tenon/apps/problem_list.hpp"
 #include "tenon/apps/table.hpp"
 #include "tenon/apps/verb.hpp"
 #include "tenon/core/nearest_name.hpp"
 #include "tenon/problems/allocation/vehicle_file.hpp"
-#include "tenon/problems/catalogue.hpp"
 #include "tenon/problems/contact/scene_file.hpp"
 #include "tenon/problems/delta/robot_file.hpp"
 #include "tenon/problems/delta/scene_file.hpp"
 #include "tenon/problems/flight/mission_file.hpp"
+#include "tenon/problems/optimal_control/ocp_scene.hpp"
 #include "tenon/problems/tasks.hpp"
 #include "tenon/solvers/make_solver.hpp"
 
@@ -35,7 +36,7 @@ struct Kind {
 
 std::vector<Named> problems() {
   std::vector<Named> list;
-  for (const CatalogueEntry& entry : catalogue()) list.push_back({entry.name, entry.description});
+  for (const CatalogueEntry& entry : problem_list()) list.push_back({entry.name, entry.description});
   return list;
 }
 
@@ -62,6 +63,7 @@ std::vector<Named> scenes() {
   for (const std::string& name : contact::builtin_scenes()) list.push_back({name, contact::describe_builtin_scene(name)});
   for (const std::string& name : delta::builtin_scenes()) list.push_back({name, delta::describe_builtin_scene(name)});
   for (const std::string& name : builtin_tasks()) list.push_back({name, describe_builtin_task(name)});
+  for (const std::string& name : builtin_ocp_scenes()) list.push_back({name, describe_builtin_ocp_scene(name)});
   return list;
 }
 

@@ -1,14 +1,14 @@
 #include "tenon/apps/named_problem.hpp"
 
 #include "tenon/apps/dump.hpp"
+#include "tenon/apps/problem_list.hpp"
 #include "tenon/core/read_file.hpp"
-#include "tenon/problems/catalogue.hpp"
 #include "tenon/problems/nl/nl_file.hpp"
 
 namespace tenon {
 
 NamedProblem built_in_problem(const std::string& name) {
-  const CatalogueEntry& entry = find_problem(name);
+  const CatalogueEntry& entry = find_problem(name, problem_list());
   NamedProblem named;
   named.name = named.built_in = name;
   named.problem = entry.make();

@@ -7,12 +7,13 @@ int run_allocate(const Arguments&);
 int run_bench(const Arguments&);
 int run_check(const Arguments&);
 int run_compare(const Arguments&);
-int run_estimate(const Arguments&);
 int run_envelope(const Arguments&);
+int run_estimate(const Arguments&);
 int run_fit(const Arguments&);
 int run_fly(const Arguments&);
 int run_list(const Arguments&);
 int run_mpc(const Arguments&);
+int run_plan(const Arguments&);
 int run_report(const Arguments&);
 int run_robot(const Arguments&);
 int run_simulate(const Arguments&);
@@ -44,6 +45,7 @@ const std::vector<Verb>& verbs() {
        1,
        {"output", "events", "report", "solver", "set", "seed", "json", "quiet", "real-time"},
        &run_fly},
+      {"fit", "thrust and torque polynomials from calibration data", "BENCH.csv", 1, 1, {"degree", "constant", "json"}, &run_fit},
       {"envelope",
        "hover efficiency, largest force and torque in all directions, and with each rotor failed",
        "VEHICLE",
@@ -51,7 +53,6 @@ const std::vector<Verb>& verbs() {
        1,
        {"rows", "output", "report", "solver", "set", "json", "quiet"},
        &run_envelope},
-      {"fit", "thrust and torque polynomials from calibration data", "BENCH.csv", 1, 1, {"degree", "constant", "json"}, &run_fit},
       {"simulate",
        "a scene in time: bodies, contacts, events, energy",
        "SCENE",
@@ -59,6 +60,20 @@ const std::vector<Verb>& verbs() {
        1,
        {"output", "events", "report", "fast-phase", "solver", "set", "tolerance", "json", "quiet", "real-time"},
        &run_simulate},
+      {"plan",
+       "one trajectory of a scene by direct collocation",
+       "SCENE",
+       1,
+       1,
+       {"output", "report", "trace", "solver", "set", "tolerance", "max-iterations", "time-limit", "json", "quiet", "verbose"},
+       &run_plan},
+      {"mpc",
+       "a receding horizon against its simulated world",
+       "SCENE",
+       1,
+       1,
+       {"output", "report", "solver", "set", "seed", "tolerance", "max-iterations", "time-limit", "json", "quiet", "real-time"},
+       &run_mpc},
       {"estimate",
        "a scene's hidden state and parameters, from a record",
        "SCENE",
@@ -67,13 +82,6 @@ const std::vector<Verb>& verbs() {
        {"measurements", "output", "report", "set", "json", "quiet"},
        &run_estimate},
       sweep_verb(&run_sweep),
-      {"mpc",
-       "a receding horizon against its simulated world",
-       "SCENE",
-       1,
-       1,
-       {"output", "report", "solver", "set", "seed", "tolerance", "max-iterations", "time-limit", "json", "quiet", "real-time"},
-       &run_mpc},
       {"solve",
        "one nonlinear program",
        "PROBLEM",

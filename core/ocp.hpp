@@ -32,7 +32,7 @@ struct Box {
 struct Complementarity {
   enum class Product {
     gap,        // h_i >= 0,  lambda_i h_i <= epsilon at both ends of the interval on which lambda_i is constant
-    baumgarte,  // w_i >= 0,  lambda_i w_i <= epsilon: permits a force at a distance; for comparison
+    baumgarte,  // w_i >= 0,  lambda_i w_i <= epsilon at its end: permits a force at a distance; for comparison
   };
   Product product = Product::gap;
   int first_input = 0;

@@ -106,12 +106,13 @@ void CollocationStage::add_term(StageTerm term, const Box& box) {
   terms_.push_back(std::move(term));
 }
 
-// h(X_s) >= 0, lambda h(X_0) <= eps, lambda h(X_s) <= eps;   or   w(X_i, Y_i, u) >= 0, lambda w(X_i, Y_i, u) <= eps          (9), (10)
+// h(X_i) >= 0, lambda h(X_0) <= eps, lambda h(X_s) <= eps;   or   w(X_i, Y_i, u) >= 0, lambda w(X_s, Y_s, u) <= eps          (9), (10)
 void CollocationStage::add_contacts(const Complementarity& contact) {
   const int lambda = u_at() + contact.first_input, s = points();
   if (contact.product == Complementarity::Product::gap) {
     const int n = contact.gaps->num_values();
-    add_term({.function = contact.gaps, .arguments = arguments_at(s, false), .name = "gap", .point = s}, at_least_zero(n));
+    for (int i = 1; i <= s; ++i)
+      add_term({.function = contact.gaps, .arguments = arguments_at(i, false), .name = "gap", .point = i}, at_least_zero(n));
     for (const int i : {0, s})
       add_term({.function = contact.gaps, .arguments = arguments_at(i, false), .name = "force_times_gap", .point = i, .factors = lambda}, at_most(n, contact.epsilon));
   }
@@ -119,7 +120,7 @@ void CollocationStage::add_contacts(const Complementarity& contact) {
   const int n = contact.barrier->num_values();
   for (int i = 1; i <= s; ++i) {
     add_term({.function = contact.barrier, .arguments = arguments_at(i, true), .name = "barrier", .point = i}, at_least_zero(n));
-    if (contact.product == Complementarity::Product::baumgarte)
+    if (i == s && contact.product == Complementarity::Product::baumgarte)
       add_term({.function = contact.barrier, .arguments = arguments_at(i, true), .name = "force_times_barrier", .point = i, .factors = lambda}, at_most(n, contact.epsilon));
   }
 }

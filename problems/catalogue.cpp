@@ -59,13 +59,12 @@ const std::vector<CatalogueEntry>& catalogue() {
   return all;
 }
 
-const CatalogueEntry& find_problem(const std::string& name) {
-  const auto& all = catalogue();
-  const auto found = std::ranges::find(all, name, &CatalogueEntry::name);
-  if (found != all.end()) return *found;
+const CatalogueEntry& find_problem(const std::string& name, const std::vector<CatalogueEntry>& among) {
+  const auto found = std::ranges::find(among, name, &CatalogueEntry::name);
+  if (found != among.end()) return *found;
 
   std::vector<std::string> names;
-  std::ranges::transform(all, std::back_inserter(names), &CatalogueEntry::name);
+  std::ranges::transform(among, std::back_inserter(names), &CatalogueEntry::name);
   throw std::invalid_argument("unknown problem \"" + name + "\", did you mean \"" + nearest_name(name, names) + "\"?");
 }
 

@@ -24,6 +24,6 @@ struct CatalogueEntry {
 const std::vector<CatalogueEntry>& catalogue();
 
 /// The entry of that name; throws std::invalid_argument with the nearest known name where there is none.
-const CatalogueEntry& find_problem(const std::string& name);
+const CatalogueEntry& find_problem(const std::string& name, const std::vector<CatalogueEntry>& among = catalogue());
 
 }  // namespace tenon

@@ -119,6 +119,7 @@ OcpScene make(const OcpModelInput& in) {
   caught.name = "catch";
   caught.mode.discrete = {1};
   caught.duration = 0.5;
+  caught.time_weight = in["time_weight"];
   caught.y.lower[1] = 0;
   const double goal[] = {in["goal_x"], in["goal_y"]};
   for (int i = 0; i < 2; ++i) {
@@ -140,7 +141,7 @@ OcpScene make(const OcpModelInput& in) {
 OcpModel ball_catch_model() {
   return {.name = "bouncing-ball-catch",
           .parameters = {{"mass", 0.05}, {"gravity", 9.81}, {"height", 1}, {"speed", 0.8}, {"restitution", 0.8}, {"cup", 1}, {"least_height", 0.1},
-                         {"goal_x", 0.6}, {"goal_y", 0.3}, {"largest_acceleration", 15}, {"softness", 0.02}, {"rate", 10}},
+                         {"goal_x", 0.6}, {"goal_y", 0.3}, {"largest_acceleration", 15}, {"softness", 0.02}, {"time_weight", 2}, {"rate", 10}},
           .contacts = {},
           .duration = 2,
           .intervals = 10,

@@ -113,6 +113,7 @@ void add_single_phase(const OcpModelInput& in, const Task& task, const FingerAnd
     contact.gaps = automatic_function<4, 1>([](const auto& x, auto& h) { h[0] = x[kBlock] - x[kFinger]; }, {"finger"});
     if (in.contact == "baumgarte") {
       contact.product = Complementarity::Product::baumgarte;
+      contact.epsilon *= in["rate"] * in["rate"];  // w is of the size of r^2 h
       contact.barrier = automatic_function<7, 1>(
           [model](const auto& z, auto& w) {
             using T = std::decay_t<decltype(z[0])>;
@@ -125,10 +126,14 @@ void add_single_phase(const OcpModelInput& in, const Task& task, const FingerAnd
     }
     phase.contact = std::make_shared<Complementarity>(contact);
   }
-  // A push in the first half, which the block's end needs in any case.
-  phase.guess = [task](double f, VectorRef x, VectorRef y, VectorRef u) {
-    x << task.from[0] + (f < 0.5 ? 2 * f : 2 - 2 * f) * (0.5 * task.to[1] - task.from[0]), f * task.to[1], 0, 0;
-    y[0] = u[1] = 0.1;
+  // There, a push, and back while the block slides on.
+  phase.guess = [task, duration = in.duration](double f, VectorRef x, VectorRef y, VectorRef u) {
+    const double there = 0.2, apart = 0.6, released = 0.6 * task.to[1];
+    const double block = f < there ? 0 : f < apart ? released * (f - there) / (apart - there) : released + (task.to[1] - released) * (f - apart) / (1 - apart);
+    const double finger = f < there ? task.from[0] * (1 - f / there) : f < apart ? block : released + (task.to[0] - released) * (f - apart) / (1 - apart);
+    x << finger, block, 0, 0;
+    x[kBlockV] = f < there ? 0 : task.to[1] / duration;
+    y[0] = u[1] = f > there && f < apart ? 1 : 0.01;
   };
   if (in.contact == "law") {
     phase.guess = [guess = phase.guess](double f, VectorRef x, VectorRef y, VectorRef u) { guess(f, x, y, u), u[1] = 0; };
@@ -159,11 +164,9 @@ void add_phases(const OcpModelInput& in, const Task& task, const OcpPhase& like,
     after[kFingerV] = after[kBlockV] = (mf * x[kFingerV] + mb * x[kBlockV]) / (mf + mb);
   });
   const auto gap = automatic_function<7, 1>([](const auto& z, auto& h) { h[0] = z[kBlock] - z[kFinger]; }, {"gap"});
-  for (OcpPhase* phase : {&approach, &slide}) {
-    phase->rows = gap;
-    phase->rows_box = Box(1);
-    phase->rows_box.lower[0] = 0;
-  }
+  slide.rows = gap;
+  slide.rows_box = Box(1);
+  slide.rows_box.lower[0] = 0;
   approach.guess = [task](double f, VectorRef x, VectorRef, VectorRef) { x << (1 - f) * task.from[0], 0, 0.1, 0; };
   push.guess = [task](double f, VectorRef x, VectorRef y, VectorRef) { x << 0.5 * f * task.to[1], 0.5 * f * task.to[1], 0.2, 0.2, y[0] = 1; };
   slide.guess = [task](double f, VectorRef x, VectorRef, VectorRef) {
@@ -181,6 +184,7 @@ OcpScene make(const OcpModelInput& in) {
   scene.scenery = draw();
   OcpPhase like(*dae);
   like.u.limit(0, -in["largest_force"], in["largest_force"]);
+  like.x.lower[kBlockV] = -Task(in).rest;  // nothing pulls it back; said so that iterates stay on this side of the friction
   Vector effort = Vector::Zero(7);
   effort[5] = 1;
   like.cost = std::make_shared<WeightedSquares>(effort, Vector::Zero(7));
@@ -195,8 +199,8 @@ OcpScene make(const OcpModelInput& in) {
 
 OcpModel push_and_slide_model() {
   return {.name = "push-and-slide",
-          .parameters = {{"finger_mass", 0.5}, {"block_mass", 0.3}, {"friction", 0.3}, {"slip_speed", 0.02}, {"gravity", 9.81}, {"rate", 10}, {"stiffness", 2e3},
-                         {"softness", 1e-3}, {"largest_force", 20}, {"epsilon", 1e-5}, {"clearance", 0.05}, {"distance", 0.3}, {"time_weight", 1}},
+          .parameters = {{"finger_mass", 0.5}, {"block_mass", 0.3}, {"friction", 0.3}, {"slip_speed", 0.05}, {"gravity", 9.81}, {"rate", 10}, {"stiffness", 300},
+                         {"softness", 2e-3}, {"largest_force", 20}, {"epsilon", 1e-5}, {"clearance", 0.05}, {"distance", 0.3}, {"time_weight", 1}},
           .contacts = {"complementarity", "phases", "baumgarte", "law"},
           .duration = 1.5,
           .intervals = 30,
