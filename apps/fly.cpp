@@ -144,7 +144,7 @@ int run_fly(const Arguments& given) {
   if (arguments.output.empty()) arguments.output = record_beside_report(arguments, ".csv", "");
   if (arguments.events.empty()) arguments.events = record_beside_report(arguments, ".events.csv", "");
   flight::Mission mission = flight::load_mission(arguments.names.front(), arguments.set);
-  mission.seed = arguments.seed;
+  mission.seed = arguments.seed.value_or(mission.seed);
   const std::string solver = arguments.solver.value_or(default_allocator());
   make_allocator(mission.vehicle, solver, {});  // a solver that nobody knows is bad input, not a flight that fails
   const flight::FlightDae dae(mission, allocator_maker(solver));
