@@ -18,6 +18,7 @@ struct IndexRange {
   int begin = 0, end = 0;  // begin <= i < end
 
   int size() const { return end - begin; }
+  bool contains(int i) const { return begin <= i && i < end; }
   bool operator==(const IndexRange&) const = default;
 };
 

@@ -69,8 +69,7 @@ void StageSystem::find_states(const Stages& stages, const SparsePattern& jacobia
   for (int i = 0; i < n_; ++i) {
     Home& home = homes_[i];
     if (is_global(i)) continue;
-    const IndexRange slacks = stages.stages[home.stage].slacks;
-    if (i >= slacks.begin && i < slacks.end) continue;
+    if (stages.stages[home.stage].slacks.contains(i)) continue;
     StageBlocks& stage = stages_[home.stage];
     (is_state[i] ? home.state : home.local) = is_state[i] ? stage.states++ : stage.locals++;
   }
