@@ -6,6 +6,7 @@
 
 #include "tenon/core/check_derivatives.hpp"
 #include "tenon/core/dependent_rows.hpp"
+#include "tenon/core/nlp_decorator.hpp"
 #include "tenon/core/solver.hpp"
 
 namespace tenon {
@@ -16,6 +17,7 @@ constexpr std::size_t kMostNamed = 6;      // names in a sentence
 constexpr int kMostDifferentiated = 200;   // variables of a problem whose derivatives are checked
 constexpr double kDerivativeError = 1e-4;  // far above the error of differences: a wrong formula
 constexpr double kActive = 1e-6;
+constexpr double kRunaway = 1e6;  // mean |multiplier| of a hundred times this is none
 
 std::string number(double value) {
   if (std::isnan(value)) return "nan";  // whose sign says nothing
@@ -44,6 +46,29 @@ std::string standing(double value, double lower, double upper) {
   if (at(upper)) return "active at its upper bound";
   return value < lower || value > upper ? "outside" : "inactive";
 }
+
+/// A problem that names rows and variables together with their stage, where it has stages.
+class NamedByStage final : public NlpDecorator {
+ public:
+  explicit NamedByStage(const Nlp& problem) : NlpDecorator(problem), stages_(problem.stages()) {}
+
+  std::string variable_name(int i) const override {
+    return problem_.variable_name(i) +
+           place([i](const Stages::Stage& stage) { return stage.variables.contains(i) || stage.slacks.contains(i); });
+  }
+  std::string constraint_name(int j) const override {
+    return problem_.constraint_name(j) + place([j](const Stages::Stage& stage) { return stage.rows.contains(j); });
+  }
+
+ private:
+  template <class Holds>
+  std::string place(Holds holds) const {
+    const auto found = std::ranges::find_if(stages_.stages, holds);
+    return found == stages_.stages.end() ? "" : " (stage " + std::to_string(found - stages_.stages.begin()) + ")";
+  }
+
+  Stages stages_;
+};
 
 /// Everything that is looked at, evaluated once.
 class Examination {
@@ -221,10 +246,11 @@ std::string Explanation::text() const {
   return text;
 }
 
-Explanation explain(const Nlp& problem, const Point& point, const Result& result) {
-  validate(problem, point);
+Explanation explain(const Nlp& unnamed, const Point& point, const Result& result) {
+  validate(unnamed, point);
   Explanation out;
   if (result.status == Status::solved) return out;
+  const NamedByStage problem(unnamed);
   const Examination examination(problem, point);
   out.sentences = examination.not_finite();
   if (!out.sentences.empty()) return out;
@@ -236,6 +262,10 @@ Explanation explain(const Nlp& problem, const Point& point, const Result& result
   if (result.status == Status::unbounded) {
     out.sentences.push_back(examination.runaway());
     return out;
+  }
+  if (result.status == Status::numerical_failure && result.residual.primal <= kActive && result.residual.scale > kRunaway) {
+    out.sentences.push_back("the rows are met, but their multipliers grow without limit (a hundred times " + number(result.residual.scale) +
+                            " in the mean): a minimum may lie here that has none");
   }
   for (const std::string& sentence : examination.worst_parts()) out.sentences.push_back(sentence);
   if (result.residual.primal > kActive) {

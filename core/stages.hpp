@@ -6,6 +6,8 @@
 //
 // A row may touch variables of its own stage, of the next one (where dynamics lead) and globals (a free duration, parameters); the Hessian
 // couples what one row or one term of the objective may: variables of one stage, of a row's two stages, and globals.
+//
+// A slack is a variable in one row of its stage alone, with a curvature of its own at most: it costs the linear algebra next to nothing.
 #pragma once
 
 #include <vector>
@@ -16,15 +18,17 @@ struct IndexRange {
   int begin = 0, end = 0;  // begin <= i < end
 
   int size() const { return end - begin; }
+  bool contains(int i) const { return begin <= i && i < end; }
   bool operator==(const IndexRange&) const = default;
 };
 
 struct Stages {
   struct Stage {
     IndexRange variables, rows;
+    IndexRange slacks = {};  // apart from the other variables
   };
 
-  std::vector<Stage> stages;  // every row, and every variable but the globals, is in exactly one of them
+  std::vector<Stage> stages;  // every row, and every variable but the globals, is in exactly one range of exactly one of them
   IndexRange globals;
 
   bool empty() const { return stages.empty(); }

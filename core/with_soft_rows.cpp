@@ -37,11 +37,12 @@ Bounds bounds_of(const Nlp& problem) {
 WithSoftRows::WithSoftRows(const Nlp& problem)
     : NlpDecorator(problem), soft_(problem.soft_rows()), n_(problem.num_variables()), m_(problem.num_constraints()) {
   check(problem, soft_);
+  std::ranges::sort(soft_, {}, &SoftRow::row);
   linear_.resize(2 * count());
   quadratic_.resize(2 * count());
   for (int k = 0; k < count(); ++k) {
-    linear_[k] = linear_[count() + k] = soft_[std::size_t(k)].linear;
-    quadratic_[k] = quadratic_[count() + k] = soft_[std::size_t(k)].quadratic;
+    linear_.segment<2>(2 * k).setConstant(soft_[std::size_t(k)].linear);
+    quadratic_.segment<2>(2 * k).setConstant(soft_[std::size_t(k)].quadratic);
   }
 }
 
@@ -58,11 +59,11 @@ Point WithSoftRows::lift(const Point& point) const {
   lifted.lambda = point.lambda;
   for (int k = 0; k < count(); ++k) {
     const int j = soft_[std::size_t(k)].row;
-    double &p = lifted.x[n_ + k], &n = lifted.x[n_ + count() + k];
+    double &p = lifted.x[excess(k)], &n = lifted.x[shortfall(k)];
     if (rows[j] > inner.c_upper[j]) p = rows[j] - inner.c_upper[j];
     if (rows[j] < inner.c_lower[j]) n = inner.c_lower[j] - rows[j];
-    lifted.z[n_ + k] = std::min(0.0, point.lambda[j] - linear_[k] - quadratic_[k] * p);
-    lifted.z[n_ + count() + k] = std::min(0.0, -point.lambda[j] - linear_[k] - quadratic_[k] * n);
+    lifted.z[excess(k)] = std::min(0.0, point.lambda[j] - linear_[2 * k] - quadratic_[2 * k] * p);
+    lifted.z[shortfall(k)] = std::min(0.0, -point.lambda[j] - linear_[2 * k] - quadratic_[2 * k] * n);
   }
   return lifted;
 }
@@ -78,17 +79,25 @@ double WithSoftRows::price(ConstVectorRef x) const {
   return slacks.dot(linear_) + 0.5 * slacks.cwiseAbs2().dot(quadratic_);
 }
 
-// J = [ J_c  -E  E ],  E: one unit column for each soft row
+// J = [ J_c  -e_0  e_0  -e_1  e_1 ... ],  e_k: the unit column of soft row k
 SparsePattern WithSoftRows::jacobian_pattern() const {
   SparsePattern pattern = problem_.jacobian_pattern();
-  for (int side = 0; side < 2; ++side) {
-    for (const SoftRow& soft : soft_) {
-      pattern.inner.push_back(soft.row);
-      pattern.outer.push_back(pattern.nonzeros());
-    }
+  for (int k = 0; k < 2 * count(); ++k) {
+    pattern.inner.push_back(soft_[std::size_t(k / 2)].row);
+    pattern.outer.push_back(pattern.nonzeros());
   }
   pattern.cols += 2 * count();
   return pattern;
+}
+
+// The slacks of a stage's soft rows are the stage's.
+Stages WithSoftRows::stages() const {
+  Stages stages = problem_.stages();
+  const auto first_from = [&](int row) {
+    return static_cast<int>(std::ranges::lower_bound(soft_, row, {}, &SoftRow::row) - soft_.begin());
+  };
+  for (auto& [variables, rows, slacks] : stages.stages) slacks = {excess(first_from(rows.begin)), excess(first_from(rows.end))};
+  return stages;
 }
 
 // H = [ H_c  0             ]
@@ -115,15 +124,15 @@ void WithSoftRows::bounds(Bounds& bounds) const {
   bounds.x_lower.tail(2 * count()).setZero();
   for (int k = 0; k < count(); ++k) {
     const int j = soft_[std::size_t(k)].row;
-    if (std::isinf(inner.c_upper[j])) bounds.x_upper[n_ + k] = 0;
-    if (std::isinf(inner.c_lower[j])) bounds.x_upper[n_ + count() + k] = 0;
+    if (std::isinf(inner.c_upper[j])) bounds.x_upper[excess(k)] = 0;
+    if (std::isinf(inner.c_lower[j])) bounds.x_upper[shortfall(k)] = 0;
   }
 }
 
 /// A slack is as large as its row.
 void WithSoftRows::nominal_values(VectorRef variables, VectorRef rows) const {
   problem_.nominal_values(variables.head(n_), rows);
-  for (int k = 0; k < count(); ++k) variables[n_ + k] = variables[n_ + count() + k] = rows[soft_[std::size_t(k)].row];
+  for (int k = 0; k < count(); ++k) variables[excess(k)] = variables[shortfall(k)] = rows[soft_[std::size_t(k)].row];
 }
 
 void WithSoftRows::initial_point(VectorRef x) const {
@@ -142,14 +151,13 @@ void WithSoftRows::gradient(ConstVectorRef x, Workspace& workspace, VectorRef gr
 
 void WithSoftRows::constraints(ConstVectorRef x, Workspace& workspace, VectorRef values) const {
   problem_.constraints(x.head(n_), workspace, values);
-  for (int k = 0; k < count(); ++k) values[soft_[std::size_t(k)].row] += x[n_ + count() + k] - x[n_ + k];
+  for (int k = 0; k < count(); ++k) values[soft_[std::size_t(k)].row] += x[shortfall(k)] - x[excess(k)];
 }
 
 void WithSoftRows::jacobian(ConstVectorRef x, Workspace& workspace, std::span<double> values) const {
   const std::size_t inner = values.size() - 2 * soft_.size();
   problem_.jacobian(x.head(n_), workspace, values.first(inner));
-  std::ranges::fill(values.subspan(inner, soft_.size()), -1.0);
-  std::ranges::fill(values.last(soft_.size()), 1.0);
+  for (std::size_t k = inner; k < values.size(); k += 2) values[k] = -1, values[k + 1] = 1;
 }
 
 void WithSoftRows::hessian(ConstVectorRef x, double sigma, ConstVectorRef lambda, Workspace& workspace, std::span<double> values) const {
@@ -161,7 +169,7 @@ void WithSoftRows::hessian(ConstVectorRef x, double sigma, ConstVectorRef lambda
 std::string WithSoftRows::variable_name(int i) const {
   if (i < n_) return problem_.variable_name(i);
   const int k = i - n_;
-  return (k < count() ? "excess of " : "shortfall of ") + problem_.constraint_name(soft_[std::size_t(k % count())].row);
+  return (k % 2 == 0 ? "excess of " : "shortfall of ") + problem_.constraint_name(soft_[std::size_t(k / 2)].row);
 }
 
 }  // namespace tenon

@@ -9,7 +9,7 @@
 //
 // with equality where the row is violated: the multiplier is what a violation costs, and never more. So where the hard problem has a
 // solution with |lambda| < w, that is the soft one's too, with p = n = 0 (the penalty is exact); else the rows give way at the least price.
-// The variables are ordered (x, p, n). With w = 0 it is a compliant row with D = 1/q, which needs no slack (nlp.hpp).
+// The variables are ordered (x, p_0, n_0, p_1, n_1, ...), soft rows ascending, so that each stage's slacks are together. With w = 0 it is a compliant row with D = 1/q, which needs no slack (nlp.hpp).
 #pragma once
 
 #include <vector>
@@ -34,7 +34,7 @@ class WithSoftRows final : public NlpDecorator {
 
   int num_variables() const override { return n_ + 2 * count(); }
   SparsePattern jacobian_pattern() const override;
-  Stages stages() const override { return {}; }  // its patterns are not those of stages
+  Stages stages() const override;
   SparsePattern hessian_pattern() const override;
   void bounds(Bounds& bounds) const override;
   std::vector<SoftRow> soft_rows() const override { return {}; }
@@ -50,10 +50,12 @@ class WithSoftRows final : public NlpDecorator {
 
  private:
   int count() const { return static_cast<int>(soft_.size()); }
+  int excess(int k) const { return n_ + 2 * k; }  // the place of p_k, and of n_k
+  int shortfall(int k) const { return n_ + 2 * k + 1; }
 
-  std::vector<SoftRow> soft_;
+  std::vector<SoftRow> soft_;  // rows ascending
   int n_, m_;                  // of the problem itself
-  Vector linear_, quadratic_;  // w and q of each slack, p first
+  Vector linear_, quadratic_;  // w and q of each slack
 };
 
 }  // namespace tenon

@@ -12,6 +12,7 @@
 #include "tenon/core/nlp_decorator.hpp"
 #include "tenon/core/nonnegative_least_squares.hpp"
 #include "tenon/problems/catalogue.hpp"
+#include "tenon/problems/optimal_control/swing_up.hpp"
 #include "tenon/solvers/make_solver.hpp"
 
 namespace tenon {
@@ -211,6 +212,26 @@ TEST(Explanation, AnUnboundedEndNamesWhatRanAway) {
   const Ended ended = solve(unbounded());
   EXPECT_EQ(ended.result.status, Status::unbounded);
   EXPECT_THAT(ended.explanation.text(), HasSubstr("has run furthest"));
+}
+
+TEST(Explanation, AMinimumWithoutMultipliersIsSaidToBeOne) {
+  const auto x = polynomial_variables(2);  // hs013: the gradients of the two active rows at (1, 0) are opposite
+  const Polynomial depth = 1 - x[0];
+  const PolynomialNlp problem({.name = "cusp",
+                               .start = vector({-2, -2}),
+                               .x_lower = vector({0, 0}),
+                               .objective = square(x[0] - 2) + square(x[1]),
+                               .rows = {at_least_zero(depth * depth * depth - x[1])}});
+  const Ended ended = solve(problem);
+  EXPECT_EQ(ended.result.status, Status::numerical_failure);
+  EXPECT_LT(ended.result.iterations, 100);
+  EXPECT_NEAR(ended.result.objective, 1, 1e-3);
+  EXPECT_THAT(ended.explanation.text(), HasSubstr("multipliers grow without limit"));
+}
+
+TEST(Explanation, OfAProblemWithStagesNamesThem) {
+  const SwingUp problem(cart_pole(20));
+  EXPECT_THAT(solve(problem, {.max_iterations = 3}).explanation.text(), HasSubstr(" (stage "));
 }
 
 TEST(Explanation, ASolvedProblemNeedsNone) {

@@ -32,6 +32,9 @@ std::vector<StageShape> shapes() {
       {.intervals = 5, .globals = 1, .equalities = 1, .inequalities = 1},
       {.intervals = 4, .implicit = true},
       {.intervals = 4, .globals = 1, .equalities = 1, .implicit = true},
+      {.intervals = 4, .slacks = 2},
+      {.intervals = 4, .states = 4, .inequalities = 2, .slacks = 5},
+      {.intervals = 4, .globals = 1, .equalities = 2, .slacks = 3},
       {.intervals = 1, .states = 2, .inputs = 1},
       {.intervals = 3, .states = 1, .inputs = 1},
   };
@@ -107,7 +110,7 @@ TEST(StageKkt, HoldsFixedVariablesWhereverTheyAre) {
     std::vector<int> fixed = {shape.states, size + shape.states + 1};  // two inputs, the first state, half of the last one
     for (int i = 0; i < shape.states; ++i) fixed.push_back(i);
     for (int i = 0; i < shape.states / 2; ++i) fixed.push_back(size * shape.intervals + i);
-    if (shape.globals > 0) fixed.push_back(instance.n - 1);
+    if (shape.globals > 0) fixed.push_back(instance.stages.globals.end - 1);
     for (const int i : fixed) instance.sigma[i] = 1e30;
 
     // the same with identity rows in their places

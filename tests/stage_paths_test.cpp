@@ -2,6 +2,7 @@
 // solves every horizon, allocates nothing and repeats bit for bit.
 #include <gtest/gtest.h>
 
+#include "tenon/core/with_soft_rows.hpp"
 #include "tenon/problems/optimal_control/linear_quadratic.hpp"
 #include "tenon/problems/optimal_control/swing_up.hpp"
 #include "tenon/tests/allocation_counter.hpp"
@@ -107,6 +108,15 @@ class LeastTime final : public Nlp {
   bool repeated_;
 };
 
+/// The ends may be missed: the first at a price that is worth it, the second at one that is not.
+class SoftEnds final : public NlpDecorator {
+ public:
+  using NlpDecorator::NlpDecorator;
+  std::vector<SoftRow> soft_rows() const override {
+    return {{.row = 2 * LeastTime::kIntervals + 1, .linear = 10}, {.row = 2 * LeastTime::kIntervals, .linear = 0.5, .quadratic = 1}};
+  }
+};
+
 template <class Kkt, class P>
 Traced run_with(const P& problem, const Options& options = {}) {
   Traced run{Point(problem.num_variables(), problem.num_constraints()), {}, {}};
@@ -150,6 +160,17 @@ TEST(StagePath, TakesThemWithAGlobalVariableAndRowsAtTheEnd) {
   const Traced stage = run_with<StageKkt<>>(problem);
   expect_same_iterates(stage, run_with<SparseKkt>(problem));
   EXPECT_LT(stage.point.x.tail<1>()[0], 2.2);  // 2 s in continuous time
+}
+
+TEST(StagePath, KeepsTheSlacksOfSoftRowsInTheirStages) {
+  const LeastTime hard(false);
+  const SoftEnds soft(hard);
+  const WithSoftRows problem(soft);
+  EXPECT_EQ(problem.stages().stages.back().slacks, (IndexRange{problem.num_variables() - 4, problem.num_variables()}));
+  const Traced stage = run_with<StageKkt<>>(problem);
+  expect_same_iterates(stage, run_with<SparseKkt>(problem));
+  EXPECT_GT(stage.point.x.tail<4>().maxCoeff(), 1e-3) << "the first end is missed";
+  EXPECT_LE(stage.point.x.tail<2>().maxCoeff(), 1e-6) << "the second is not";
 }
 
 TEST(StagePath, SurvivesRowsStatedTwice) {

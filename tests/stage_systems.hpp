@@ -12,6 +12,7 @@ struct StageShape {
   int states = 3, inputs = 2;
   int globals = 0;
   int equalities = 0, inequalities = 0;  // rows of each stage beside the dynamics: D = 0, D > 0
+  int slacks = 0;                        // of each interval, in the rows beside the dynamics or, without those, in the dynamics
   bool implicit = false;                 // dynamics that mix the entries of the next state, also in the Hessian
   bool indefinite = false;               // Hessians without a sign
 };
@@ -57,6 +58,14 @@ class StageGenerator {
       for (int h = first_global; h <= g; ++h) couple(g, h);
     }
     out.stages.globals = {first_global, out.n};
+    const int first_slack = out.n;
+    for (int k = 0; k < shape.intervals; ++k) {
+      for (int s = 0; s < shape.slacks; ++s, ++out.n) {
+        jacobian.emplace_back((nx + rows) * k + (rows > 0 ? nx + s % rows : s % nx), out.n);
+        if (s % 2 == 0) couple(out.n, out.n);
+      }
+      out.stages.stages[std::size_t(k)].slacks = {out.n - shape.slacks, out.n};
+    }
     out.hessian_pattern = SparsePattern::from_entries(out.n, out.n, std::move(hessian));
     out.jacobian_pattern = SparsePattern::from_entries(out.m, out.n, std::move(jacobian));
     out.hessian = out.hessian_pattern.zero_matrix();
@@ -69,6 +78,7 @@ class StageGenerator {
     }
     out.sigma.setZero(out.n);
     out.d.setZero(out.m);
+    for (double& sigma : out.sigma.tail(out.n - first_slack)) sigma = 0.1 + uniform();
     for (int k = 0; k < shape.intervals; ++k) {
       for (int r = 0; r < nx; ++r) out.jacobian.coeffRef((nx + rows) * k + r, size * (k + 1) + r) = k % 2 == 0 ? -1 : 4 + uniform();
       for (int r = 0; r < shape.inequalities; ++r) out.d[(nx + rows) * k + nx + shape.equalities + r] = std::pow(10, 4 * uniform() - 2);

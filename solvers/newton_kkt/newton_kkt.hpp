@@ -94,7 +94,7 @@ class NewtonKkt {
   std::optional<Status> start(PointOf<P>& point) {
     now_->x = point.x;
     now_->lambda = point.lambda;
-    iterations_ = tiny_steps_ = 0;
+    iterations_ = tiny_steps_ = creeping_steps_ = 0;
     trust_guess_ = options_.warm_start;
     alpha_ = {};
     system_.reset();
@@ -123,6 +123,10 @@ class NewtonKkt {
 
   void measure() {
     error_ = barrier_.error(*now_, 0);
+    const bool creeps = error_.scale > kRunaway && error_.primal <= tolerance() &&
+                        std::abs(now_->objective - last_objective_) <= kCreep * (1 + std::abs(last_objective_));
+    creeping_steps_ = creeps ? creeping_steps_ + 1 : 0;
+    last_objective_ = now_->objective;
     if (options_.on_iteration) stopped_ = !options_.on_iteration(describe());
   }
 
@@ -132,6 +136,7 @@ class NewtonKkt {
     if (iterations_ >= options_.max_iterations) return Status::iteration_limit;
     if (std::isfinite(options_.time_limit) && elapsed() >= options_.time_limit) return Status::time_limit;
     if (tiny_steps_ >= 2 && mu_.at_end()) return no_progress();
+    if (creeping_steps_ >= kPatience) return no_progress();  // multipliers that grow without limit: there are none to converge to
     if (now_->objective < -kDivergence && error_.primal <= tolerance()) return Status::unbounded;
     if (now_->x.template lpNorm<Eigen::Infinity>() > kDivergence) return Status::unbounded;
     return std::nullopt;
@@ -303,6 +308,8 @@ class NewtonKkt {
   static constexpr Scalar kCramped = Scalar(1e-3);
   static constexpr Scalar kFar = Scalar(0.1);
   static constexpr Scalar kDivergence = Scalar(1e20);
+  static constexpr Scalar kRunaway = Scalar(1e6), kCreep = Scalar(1e-6);
+  static constexpr int kPatience = 10;
   static constexpr Scalar kRestored = Scalar(0.9);   // kappa_resto of [WB06, sec. 3.3]
 
   Options options_;
@@ -317,8 +324,9 @@ class NewtonKkt {
   Step<P> step_;
   BarrierError<Scalar> error_;
   StepLengths<Scalar> alpha_;
+  Scalar last_objective_ = 0;
   typename Clock::time_point begin_;
-  int iterations_ = 0, tiny_steps_ = 0;
+  int iterations_ = 0, tiny_steps_ = 0, creeping_steps_ = 0;
   bool stopped_ = false, trust_guess_ = false, predicted_ = false;
 };
 

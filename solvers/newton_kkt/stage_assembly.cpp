@@ -30,6 +30,7 @@ bool StageSystem::assemble(const SparseMatrix& hessian, const SparseMatrix& jaco
   const bool is_new = !holds(jacobian);
   if (is_new && !place(jacobian)) return false;
   for (std::size_t row = 0; row < row_places_.size(); ++row) compliance_[row_places_[row]] = d[row];
+  eliminate_slacks(hessian, jacobian, sigma);
   if (scaled_) compliance_.array() *= row_scale_.array().square();
   for (const int variable : fixed_) take_out(variable);
   if (is_new) {
@@ -84,9 +85,23 @@ void StageSystem::find_fixed(ConstVectorRef sigma) {
   std::ranges::fill(fixed_states_, 0);
   if (!(sigma.maxCoeff() >= kFixed)) return;
   for (int i = 0; i < n_; ++i) {
-    if (sigma[i] < kFixed) continue;
+    if (sigma[i] < kFixed || homes_[i].is_slack()) continue;
     fixed_.push_back(i);
     if (homes_[i].state >= 0) ++fixed_states_[homes_[i].stage];
+  }
+}
+
+// h dx + a dlambda = r:   D += a^2/h in its row, whose right-hand side loses a r/h.  stage_kkt.md (1.2)
+void StageSystem::eliminate_slacks(const SparseMatrix& hessian, const SparseMatrix& jacobian, ConstVectorRef sigma) {
+  slack_inertia_ = {};
+  for (Slack& slack : slacks_) {
+    const double stiffness = sigma[slack.variable];
+    const double pivot = stiffness + (slack.curvature >= 0 ? hessian.valuePtr()[slack.curvature] : 0);
+    ++(pivot > 0 ? slack_inertia_.positive : pivot < 0 ? slack_inertia_.negative : slack_inertia_.zero);
+    slack.inverse = pivot == 0 || stiffness >= kFixed ? 0 : 1 / pivot;
+    const double a = jacobian.valuePtr()[slack.coefficient];
+    slack.pull = a * slack.inverse;
+    compliance_[row_places_[slack.row]] += a * slack.pull;
   }
 }
 
@@ -130,18 +145,21 @@ void StageSystem::take_out(int variable) {
 void StageSystem::gather(ConstVectorRef r_x, ConstVectorRef r_c, double* vector) const {
   for (std::size_t i = 0; i < variable_places_.size(); ++i) vector[variable_places_[i]] = r_x[i];
   for (std::size_t j = 0; j < row_places_.size(); ++j) vector[row_places_[j]] = r_c[j];
+  for (const Slack& slack : slacks_) vector[row_places_[slack.row]] -= slack.pull * r_x[slack.variable];
+  if (!slacks_.empty()) vector[at_slacks_] = 0;
   if (scaled_) {
     for (const int place : row_places_) vector[place] *= row_scale_[place];
   }
   for (const int i : fixed_) vector[variable_places_[i]] = 0;
 }
 
-void StageSystem::scatter(const double* vector, VectorRef dx, VectorRef dlambda) const {
+void StageSystem::scatter(const double* vector, ConstVectorRef r_x, VectorRef dx, VectorRef dlambda) const {
   for (std::size_t i = 0; i < variable_places_.size(); ++i) dx[i] = vector[variable_places_[i]];
   for (std::size_t j = 0; j < row_places_.size(); ++j) dlambda[j] = vector[row_places_[j]];
   if (scaled_) {
     for (std::size_t j = 0; j < row_places_.size(); ++j) dlambda[j] *= row_scale_[row_places_[j]];
   }
+  for (const Slack& slack : slacks_) dx[slack.variable] = slack.inverse * r_x[slack.variable] - slack.pull * dlambda[slack.row];
 }
 
 }  // namespace tenon

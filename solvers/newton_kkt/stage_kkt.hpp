@@ -34,7 +34,7 @@ class StageKkt {
     trusted_ = false;
     finite_ = system_.assemble(hessian, jacobian, sigma, d);
     if (!finite_) return {0, 0, system_.n() + system_.m()};
-    Inertia inertia;
+    Inertia inertia = system_.slack_inertia();
     for (int k = system_.size() - 1; k >= 0; --k) {
       regular_[k] =
           may_be_regular(k) && visit(k, [&](auto stage) { return stage.factor(next_value(k), compliance_of_rows(k), scratch_.data()); });
@@ -62,7 +62,7 @@ class StageKkt {
     const double rhs_size = rhs_.lpNorm<Eigen::Infinity>();
     solve(rhs_, solution_);
     if (trusted_) {
-      system_.scatter(solution_.data(), dx, dlambda);
+      system_.scatter(solution_.data(), r_x, dx, dlambda);
       return 0;
     }
     const double size = rhs_size + solution_.lpNorm<Eigen::Infinity>();
@@ -80,7 +80,7 @@ class StageKkt {
       error = next;
       if (slow) break;
     }
-    system_.scatter(solution_.data(), dx, dlambda);
+    system_.scatter(solution_.data(), r_x, dx, dlambda);
     return error / std::max(rhs_size, std::numeric_limits<double>::min());
   }
 
@@ -111,7 +111,7 @@ class StageKkt {
     if (!b.is_explicit) return false;
     if (k + 1 < system_.size() && fronts_.left_over(k + 1) > 0) return false;
     for (int i = 0; i < b.own_next_states; ++i) {
-      if (system_.link()[b.at_dynamics + i] != -1 || system_.compliance()[b.at_dynamics + i] > 0) return false;
+      if (system_.link()[b.at_dynamics + i] != -1 || system_.compliance()[b.at_dynamics + i] != 0) return false;
     }
     for (int i = 0; i < b.rows; ++i) {
       if (!(compliance_of_rows(k)[i] > kStiff)) return false;

@@ -20,6 +20,7 @@ int padded(int n) {
 StageSystem::StageSystem(const Stages& stages, const SparsePattern& hessian, const SparsePattern& jacobian)
     : n_(hessian.cols), m_(jacobian.rows), globals_(stages.globals.size()), stages_(stages.stages.size()) {
   find_states(stages, jacobian);
+  find_slacks(stages, hessian, jacobian);
   find_dynamics(stages, hessian, jacobian);
   reserve();
   place_hessian(hessian);
@@ -34,10 +35,11 @@ void StageSystem::find_states(const Stages& stages, const SparsePattern& jacobia
   homes_.assign(static_cast<std::size_t>(n_), {});
   row_stage_.assign(static_cast<std::size_t>(m_), -1);
   for (int k = 0; k < size(); ++k) {
-    const auto& [variables, rows] = stages.stages[k];
-    if (variables.begin < 0 || variables.end > n_ || rows.begin < 0 || rows.end > m_)
+    const auto& [variables, rows, slacks] = stages.stages[k];
+    if (variables.begin < 0 || variables.end > n_ || rows.begin < 0 || rows.end > m_ || slacks.begin < 0 || slacks.end > n_)
       refuse("stage " + std::to_string(k) + " is out of range");
     for (int i = variables.begin; i < variables.end; ++i) homes_[i].stage = k;
+    for (int i = slacks.begin; i < slacks.end; ++i) homes_[i].stage = k;
     for (int j = rows.begin; j < rows.end; ++j) row_stage_[j] = k;
   }
   const auto is_global = [&](int i) { return i >= stages.globals.begin && i < stages.globals.end; };
@@ -67,6 +69,7 @@ void StageSystem::find_states(const Stages& stages, const SparsePattern& jacobia
   for (int i = 0; i < n_; ++i) {
     Home& home = homes_[i];
     if (is_global(i)) continue;
+    if (stages.stages[home.stage].slacks.contains(i)) continue;
     StageBlocks& stage = stages_[home.stage];
     (is_state[i] ? home.state : home.local) = is_state[i] ? stage.states++ : stage.locals++;
   }
@@ -79,6 +82,27 @@ void StageSystem::find_states(const Stages& stages, const SparsePattern& jacobia
     homes_[stages.globals.begin + g] = {size() - 1, -1, stage(size() - 1).states + g};
   }
   for (StageBlocks& b : stages_) b.states += globals_;
+}
+
+void StageSystem::find_slacks(const Stages& stages, const SparsePattern& hessian, const SparsePattern& jacobian) {
+  for (const Stages::Stage& stage : stages.stages) {
+    for (int i = stage.slacks.begin; i < stage.slacks.end; ++i) {
+      const int entry = jacobian.outer[i], row = jacobian.outer[i + 1] == entry + 1 ? jacobian.inner[entry] : -1;
+      if (row < stage.rows.begin || row >= stage.rows.end)
+        refuse("the slack " + std::to_string(i) + " is not in one row of its stage (expected one)");
+      slacks_.push_back({i, row, entry});
+    }
+  }
+  std::vector<int> slack_of(static_cast<std::size_t>(n_), -1);
+  for (std::size_t s = 0; s < slacks_.size(); ++s) slack_of[slacks_[s].variable] = static_cast<int>(s);
+  for (int j = 0; j < n_; ++j) {
+    for (int e = hessian.outer[j]; e < hessian.outer[j + 1]; ++e) {
+      const int i = hessian.inner[e];
+      if (slack_of[i] < 0 && slack_of[j] < 0) continue;
+      if (i != j) refuse("the Hessian couples variables " + std::to_string(i) + " and " + std::to_string(j) + ", one of which is a slack");
+      slacks_[slack_of[j]].curvature = e;
+    }
+  }
 }
 
 // Explicit: as many rows touch the next state as it has entries, each of them one, all of them different, and no second derivative does.
@@ -153,6 +177,8 @@ void StageSystem::reserve() {
     take(b.at_l_vector, b.locals), take(b.at_s_vector, b.states), take(b.at_dynamics, b.next_states), take(b.at_rows, b.rows);
     for (int g = 0; g < globals_ && b.next_states > 0; ++g) b.a_s[b.own_next_states + g + (b.states - globals_ + g) * b.next_stride] = 1;
   }
+  at_slacks_ = vector_size_;
+  if (!slacks_.empty()) vector_size_ += padded(1);
   for (Vector* v : {&compliance_, &link_}) v->setZero(vector_size_);
   row_scale_.setOnes(vector_size_);
   for (const StageBlocks& b : stages_) {
@@ -160,7 +186,9 @@ void StageSystem::reserve() {
   }
   for (const Home& home : homes_) {
     const StageBlocks& b = stage(home.stage);
-    variable_places_.push_back(home.local >= 0 ? b.at_l_vector + home.local : b.at_s_vector + home.state);
+    variable_places_.push_back(home.is_slack()    ? at_slacks_
+                               : home.local >= 0 ? b.at_l_vector + home.local
+                                                 : b.at_s_vector + home.state);
   }
   for (std::size_t row = 0; row < row_stage_.size(); ++row) {
     const StageBlocks& b = stage(row_stage_[row]);
@@ -176,6 +204,11 @@ void StageSystem::place_hessian(const SparsePattern& hessian) {
   for (int j = 0; j < n_; ++j) {
     const Home home = homes_[j];
     const StageBlocks& own = stage(home.stage);
+    if (home.is_slack()) {
+      diagonal_places_[j] = nowhere;
+      for (int e = hessian.outer[j]; e < hessian.outer[j + 1]; ++e) hessian_places_.push_back({nowhere, nowhere});
+      continue;
+    }
     diagonal_places_[j] =
         home.local >= 0 ? offset(own.h_ll + home.local * (own.local_stride + 1)) : offset(own.h_ss + home.state * (own.state_stride + 1));
     for (int e = hessian.outer[j]; e < hessian.outer[j + 1]; ++e) {
@@ -209,7 +242,7 @@ void StageSystem::place_hessian(const SparsePattern& hessian) {
     }
   }
   for (int j = 0; j < n_; ++j) {
-    if (!has_diagonal[j]) bare_diagonals_.push_back(diagonal_places_[j]);
+    if (!has_diagonal[j] && !homes_[j].is_slack()) bare_diagonals_.push_back(diagonal_places_[j]);
   }
 }
 
@@ -227,6 +260,7 @@ void StageSystem::place_jacobian(const SparsePattern& jacobian) {
   };
   for (int i = 0; i < n_; ++i) {
     Home home = homes_[i];
+    if (home.is_slack()) continue;
     const bool global = globals_ > 0 && home.stage == size() - 1 && home.state >= stages_.back().states - globals_;
     for (int e = jacobian.outer[i]; e < jacobian.outer[i + 1]; ++e) {
       const auto row = static_cast<std::size_t>(jacobian.inner[static_cast<std::size_t>(e)]);

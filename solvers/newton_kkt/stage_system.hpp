@@ -5,13 +5,15 @@
 //     (others)
 //
 // A stage whose dynamics are not of this explicit form has others only. Globals are carried along as states that do not move, so that
-// the border is eliminated together with the last state. Equations: stage_kkt.md.
+// the border is eliminated together with the last state. Slacks leave the system before all else: they add to the compliance of their
+// rows. Equations: stage_kkt.md.
 #pragma once
 
 #include <vector>
 
 #include "tenon/core/sparse_pattern.hpp"
 #include "tenon/core/stages.hpp"
+#include "tenon/solvers/newton_kkt/inertia.hpp"
 #include "tenon/solvers/newton_kkt/multifrontal_ldlt.hpp"
 
 namespace tenon {
@@ -52,7 +54,10 @@ class StageSystem {
   StageBlocks& stage(int k) { return stages_[k]; }
   const StageBlocks& stage(int k) const { return stages_[k]; }
 
-  /// D of the rows (scaled), 0 at variables.
+  /// Of the slacks' pivots.
+  const Inertia& slack_inertia() const { return slack_inertia_; }
+
+  /// D of the rows (scaled, with what slacks give), 0 at variables.
   const double* compliance() const { return compliance_.data(); }
   /// Coupling of each row of dynamics to its next state: -1, or 0 where that is fixed.
   const double* link() const { return link_.data(); }
@@ -61,7 +66,7 @@ class StageSystem {
 
   /// Right-hand sides and solutions between the order of the problem and that of the stages.
   void gather(ConstVectorRef r_x, ConstVectorRef r_c, double* vector) const;
-  void scatter(const double* vector, VectorRef dx, VectorRef dlambda) const;
+  void scatter(const double* vector, ConstVectorRef r_x, VectorRef dx, VectorRef dlambda) const;
 
  private:
   struct Place {
@@ -73,6 +78,13 @@ class StageSystem {
   struct Link {  // the coefficient of a next state
     int source, place;
   };
+  struct Slack {
+    int variable, row, coefficient;
+    int curvature = -1;  // its entry of the Hessian, if any
+    double pull = 0;     // coefficient / pivot
+    double inverse = 0;  // 1 / pivot; 0 where it is fixed
+  };
+  void find_slacks(const Stages& stages, const SparsePattern& hessian, const SparsePattern& jacobian);
   void find_states(const Stages& stages, const SparsePattern& jacobian);
   void find_dynamics(const Stages& stages, const SparsePattern& hessian, const SparsePattern& jacobian);
   void reserve();
@@ -82,6 +94,7 @@ class StageSystem {
   bool place(const SparseMatrix& jacobian);
   void scale_dynamics();
   void find_fixed(ConstVectorRef sigma);
+  void eliminate_slacks(const SparseMatrix& hessian, const SparseMatrix& jacobian, ConstVectorRef sigma);
   void take_out(int variable);
   int offset(const double* place) const { return static_cast<int>(place - arena_.data()); }
 
@@ -89,6 +102,7 @@ class StageSystem {
     int stage = -1;  // the last one for a global
     int local = -1;  // its index among the locals, or -1
     int state = -1;  // its index among the states
+    bool is_slack() const { return local < 0 && state < 0; }
   };
 
   int n_, m_, globals_;
@@ -100,11 +114,13 @@ class StageSystem {
   std::vector<Place> hessian_places_;
   std::vector<Run> jacobian_runs_;
   std::vector<Link> links_;
+  std::vector<Slack> slacks_;
+  Inertia slack_inertia_;
   std::vector<int> diagonal_places_, bare_diagonals_;
   std::vector<int> variable_places_, row_places_;  // in a vector
   std::vector<int> fixed_states_;  // of each stage: how many
   std::vector<int> fixed_, fixed_before_;
-  int vector_size_ = 0;
+  int vector_size_ = 0, at_slacks_ = 0;  // the last lane of a vector stands for all slacks, and is 0
   Vector compliance_, link_, row_scale_;
   Vector placed_;  // the Jacobian's values that the blocks hold
   bool scaled_ = false, holds_jacobian_ = false;
