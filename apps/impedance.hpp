@@ -1,4 +1,5 @@
-// The impedance that a held part feels, measured: delta-grasp with a swept sine on the part, the tactile loop off and on.
+// The impedance of a robot that holds a part, measured: delta-grasp with a swept sine on the part or on the wrist, the tactile loop off and
+// on.
 #pragma once
 
 #include <string>
@@ -12,6 +13,7 @@ struct ImpedancePoint {
   double frequency;              // Hz
   double off, on;                // |F/v|, N s/m, from the simulated sweep
   double linear_off, linear_on;  // the same by the linear model
+  double wrist_off, wrist_on;    // where the wrist is pushed and its speed counts
 };
 
 struct ImpedanceCurve {

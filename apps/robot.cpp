@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <stdexcept>
 
@@ -164,7 +165,8 @@ void report_workspace(const Robot& robot, const std::string& file, Json* json, b
 }
 
 std::string text_of(const LoopMargins& m) {
-  return fmt::format("phase {:.3g} deg, gain {:.3g}, delay {:.3g} ms, crossover {:.3g} Hz", m.phase, m.gain, 1e3 * m.delay, m.crossover);
+  const std::string gain = std::isinf(m.gain) ? "any" : fmt::format("{:.3g}", m.gain);
+  return fmt::format("phase {:.3g} deg, gain {}, delay {:.3g} ms, crossover {:.3g} Hz", m.phase, gain, 1e3 * m.delay, m.crossover);
 }
 
 Json json_of(const LoopMargins& m) {
@@ -172,14 +174,15 @@ Json json_of(const LoopMargins& m) {
 }
 
 void report_impedance(const std::string& robot, const std::string& file, Json* json, bool quiet) {
-  CsvWriter csv(file, {"frequency", "impedance_off", "impedance_on", "linear_off", "linear_on"});
+  CsvWriter csv(file, {"frequency", "impedance_off", "impedance_on", "linear_off", "linear_on", "wrist_off", "wrist_on"});
   const ImpedanceCurve curve = measure_impedance(robot, {});
-  double least = 1;
+  double least = 1, wrist_most = 1;
   double lowest = 0, highest = 0;  // of the band where the loop softens
   for (const ImpedancePoint& p : curve.points) {
-    csv << p.frequency << p.off << p.on << p.linear_off << p.linear_on;
+    csv << p.frequency << p.off << p.on << p.linear_off << p.linear_on << p.wrist_off << p.wrist_on;
     csv.end_row();
     least = std::min(least, p.on / p.off);
+    wrist_most = std::max(wrist_most, p.wrist_on / p.wrist_off);
     if (p.on >= p.off) continue;
     if (lowest == 0) lowest = p.frequency;
     highest = p.frequency;
@@ -191,6 +194,7 @@ void report_impedance(const std::string& robot, const std::string& file, Json* j
                                .set("least_ratio", least)
                                .set("softer_from", lowest)
                                .set("softer_to", highest)
+                               .set("wrist_most_ratio", wrist_most)
                                .set("margins", json_of(curve.margins))
                                .set("margins_delayed_2ms", json_of(curve.margins_delayed)));
   } else if (!quiet) {
@@ -198,6 +202,7 @@ void report_impedance(const std::string& robot, const std::string& file, Json* j
         "delta-grasp with {}: |F/v| at the part is lower with the tactile loop between {:.3g} and {:.3g} Hz, at best {:.3g} of what it is "
         "without\n",
         robot, lowest, highest, least);
+    fmt::print("  pushed at the wrist itself it is up to {:.3g} times as high\n", wrist_most);
     fmt::print("  margins          {}\n  with 2 ms delay  {}\n", text_of(curve.margins), text_of(curve.margins_delayed));
   }
 }

@@ -49,6 +49,7 @@ class SimulationRecord {
     if (!arguments.fast_phase.empty())
       fast_phase_.emplace(arguments.fast_phase, std::vector<std::string>{"t", "contact", "tau", "gap", "gap_rate", "gap_acceleration"});
     energy_ = static_cast<std::size_t>(std::find(columns.begin(), columns.end(), "energy") - columns.begin());
+    saturated_ = static_cast<std::size_t>(std::find(columns.begin(), columns.end(), "saturated") - columns.begin());
     audit_ = static_cast<std::size_t>(std::find(columns.begin(), columns.end(), "energy_error") - columns.begin());
     start_ = Clock::now();
   }
@@ -61,6 +62,7 @@ class SimulationRecord {
       trajectory_->end_row();
     }
     if (energy_ < row_.size()) last_energy_ = row_[energy_];
+    if (saturated_ < row_.size() && row_[saturated_] != 0) ++saturated_rows_;
     if (audit_ < row_.size()) largest_error_ = std::max(largest_error_, std::abs(row_[audit_]));
     ++rows_;
     progress_.update(std::lround(1e4 * state.t / duration_));
@@ -107,6 +109,7 @@ class SimulationRecord {
         .set("time_s", elapsed())
         .set("events", event_count_)
         .set("contacts", contacts)
+        .set("saturated_rows", saturated_rows_)
         .set("energy", last_energy_)
         .set("energy_error", largest_error_)
         .set("final", final_state);
@@ -116,6 +119,7 @@ class SimulationRecord {
     std::string text = fmt::format("{}: {} at t = {:.6g} s; {} steps of {}, {:.3g} ms\n", dae_.name(), to_string(result.status), state.t,
                                    result.steps, integrator, 1e3 * elapsed());
     text += fmt::format("energy {:.12g} J, largest error of its audit {:.2g} J\n", last_energy_, largest_error_);
+    if (saturated_rows_ > 0) text += fmt::format("motors at their limits in {} of {} rows\n", saturated_rows_, rows_);
     if (contacts_.empty()) return text;
     Table table({"contact", "collisions", "impulse"});
     for (const auto& [name, c] : contacts_) table.add({name, fmt::format("{}", c.collisions), fmt::format("{:.6g}", c.impulse)});
@@ -143,10 +147,10 @@ class SimulationRecord {
   double duration_;
   std::optional<CsvWriter> trajectory_, events_, fast_phase_;
   std::vector<double> row_;
-  std::size_t energy_ = 0, audit_ = 0;  // their columns
+  std::size_t energy_ = 0, audit_ = 0, saturated_ = 0;  // their columns
   double last_energy_ = 0, largest_error_ = 0;
   std::map<std::string, ContactSummary> contacts_;
-  long rows_ = 0, event_count_ = 0;
+  long rows_ = 0, saturated_rows_ = 0, event_count_ = 0;
   Clock::time_point start_;
 };
 

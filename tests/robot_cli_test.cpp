@@ -68,6 +68,7 @@ TEST_F(RobotVerb, TheTactileLoopSoftensTheGraspInABandAsItsLinearModelSays) {
     EXPECT_NEAR(curve["impedance_on"][k], curve["linear_on"][k], 0.04 * curve["linear_on"][k]) << curve["frequency"][k];
     if (curve["frequency"][k] < 12) {
       EXPECT_LT(curve["impedance_on"][k], 0.7 * curve["impedance_off"][k]);
+      EXPECT_GT(curve["wrist_on"][k], curve["wrist_off"][k]);
     }
   }
 }

@@ -51,6 +51,13 @@ std::complex<double> TactileLoop::impedance(double frequency) const {
   return (p.object + p.contact / (1.0 + p.contact * yield)) / s;
 }
 
+std::complex<double> TactileLoop::wrist_impedance(double frequency) const {
+  const std::complex<double> s = at_frequency(frequency);
+  const Parts p = parts(s);
+  const std::complex<double> held = p.contact / (1.0 + p.contact / p.object);  // -f/z
+  return (mass_ * (s * s + p.control * (1.0 + held * gain_ / s)) + held) / s;
+}
+
 std::complex<double> TactileLoop::loop_gain(double frequency) const {
   const std::complex<double> s = at_frequency(frequency);
   const Parts p = parts(s);
@@ -64,6 +71,7 @@ LoopMargins TactileLoop::margins() const {
   LoopMargins out;
   out.phase = std::numeric_limits<double>::infinity();
   out.delay = std::numeric_limits<double>::infinity();
+  out.gain = std::numeric_limits<double>::infinity();
   std::complex<double> before = loop_gain(kLowest);
   double phase = std::arg(before);
   for (int k = 1; k <= kPoints; ++k) {
@@ -76,7 +84,7 @@ LoopMargins TactileLoop::margins() const {
       out.phase = std::min(out.phase, margin * 180 / kPi);
       out.delay = std::min(out.delay, margin / (2 * kPi * frequency));
     }
-    if (phase > -kPi && turned <= -kPi && out.gain == 0) out.gain = 1 / std::abs(now);
+    if (phase > -kPi && turned <= -kPi && std::isinf(out.gain)) out.gain = 1 / std::abs(now);
     before = now;
     phase = turned;
   }

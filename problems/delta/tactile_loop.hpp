@@ -17,7 +17,7 @@ struct LoopMargins {
   double crossover = 0;  // Hz, the highest frequency at which the loop's gain is 1; 0: it is below 1 throughout
   double phase = 0;      // deg, the least at any crossover
   double delay = 0;      // s, the least further delay that makes it unstable
-  double gain = 0;       // the factor that makes it unstable; 0: none within the band looked at
+  double gain = 0;       // the factor that makes it unstable; infinite where none does within the band looked at
 };
 
 class TactileLoop {
@@ -27,6 +27,8 @@ class TactileLoop {
 
   /// F/v at the part, N s/m, at s = j 2 pi f.
   std::complex<double> impedance(double frequency) const;
+  /// F/v at the wrist, which holds the part.
+  std::complex<double> wrist_impedance(double frequency) const;
   /// L: the loop opened at the reference.
   std::complex<double> loop_gain(double frequency) const;
   /// Between 0.01 Hz and half of the control rate.
