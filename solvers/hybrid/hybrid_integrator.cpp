@@ -155,6 +155,7 @@ bool HybridIntegrator::find_crossing(Crossing& crossing) {
     int first = -1;
     for (int i = 0; i < after_.size(); ++i) {
       if (!is_armed_[static_cast<std::size_t>(i)] || after_[i] > 0) continue;
+      if (first >= 0 && guard_at(crossing.t, i) > 0) continue;  // falls later
       const double t = locate(i, left, right);
       if (first < 0 || t < crossing.t) first = i, crossing.t = t;
     }
