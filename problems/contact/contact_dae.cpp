@@ -102,7 +102,12 @@ Dae::Workspace ContactDae<D>::make_workspace() const {
   bodies->first_seen.resize(n);
   bodies->active.reserve(m);
   bodies->skyline.reserve(static_cast<int>(m));
-  bodies->lambda.setZero(static_cast<int>(m));
+  bodies->rhs.setZero(static_cast<int>(m));
+  bodies->answer = bodies->lambda = bodies->rhs;
+  bodies->touching.reserve(m);
+  bodies->resting.reserve(m);
+  bodies->trial.discrete.reserve(m);
+  bodies->trial.held.resize(2);
   return bodies;
 }
 
@@ -129,7 +134,11 @@ void ContactDae<D>::load(double t, ConstVectorRef x, Bodies& bodies) const {
     const Place at = places_[i];
     for (int l = 0; l < at.nq; ++l) bodies.q[i][l] = x[at.q + l];
     for (int l = 0; l < at.nv; ++l) bodies.v[i][l] = x[at.v + l];
-    bodies.poses[i] = Pose<double, D>(bodies.q[i], bodies.v[i]);
+    Pose<double, D>& pose = bodies.poses[i];
+    if (turns(at))
+      pose = Pose<double, D>(bodies.q[i], bodies.v[i]);
+    else
+      pose.p = bodies.q[i].template head<D>(), pose.pdot = bodies.v[i].template head<D>();
   }
 }
 
@@ -198,7 +207,6 @@ void ContactDae<D>::factorise(const DaeMode& mode, double t, Bodies& bodies) con
   const int k = static_cast<int>(bodies.active.size());
   if (k == 0) return;
 
-  bodies.rhs.resize(k);
   bodies.skyline.clear();
   if (has_friction_) bodies.dense.setZero(k, k);
   std::fill(bodies.first_seen.begin(), bodies.first_seen.end(), k);
@@ -251,11 +259,13 @@ void ContactDae<D>::solve(Bodies& bodies) const {
   bodies.lambda.setZero();
   const int k = static_cast<int>(bodies.active.size());
   if (k == 0) return;
-  if (has_friction_)
-    bodies.rhs = bodies.lu.solve(bodies.rhs).eval();
-  else
-    bodies.skyline.solve(bodies.rhs);
-  for (int row = 0; row < k; ++row) bodies.lambda[bodies.active[static_cast<std::size_t>(row)]] = bodies.rhs[row];
+  if (has_friction_) {
+    bodies.answer.head(k) = bodies.lu.solve(bodies.rhs.head(k));
+  } else {
+    bodies.answer.head(k) = bodies.rhs.head(k);
+    bodies.skyline.solve(bodies.answer.head(k));
+  }
+  for (int row = 0; row < k; ++row) bodies.lambda[bodies.active[static_cast<std::size_t>(row)]] = bodies.answer[row];
 }
 
 /// (H M^-1 H' + r) lambda = -(Hdot v + alpha1 h' + alpha0 h + alpha3 h^3) - H M^-1 Q over the active constraints.   (3)

@@ -90,6 +90,7 @@ class ContactDae final : public Dae {
   };
 
   Place place(int body) const { return body == kWorld ? Place{0, 0, 0, 0} : places_[static_cast<std::size_t>(body)]; }
+  bool turns(Place at) const { return at.nv > D; }
   double inverse_mass(int body, int l) const { return of(inverse_masses_, body)[l]; }
   double softness(const DaeMode& mode, const Constraint<D>& c) const;
   void load(double t, ConstVectorRef x, Bodies& bodies) const;
@@ -146,8 +147,12 @@ struct ContactDae<D>::Bodies : Dae::Scratch {
   Skyline skyline;
   Eigen::MatrixXd dense;  // with friction: H M^-1 H' is not symmetric then
   Eigen::PartialPivLU<Eigen::MatrixXd> lu;
-  Vector rhs, lambda;
+  Vector rhs, answer;  // their first entries, in the order of the active constraints
+  Vector lambda;
   int defect = 0;  // of the rank of H M^-1 H'
+
+  std::vector<int> touching, resting;  // of a transition: what may collide, what may carry a force
+  DaeMode trial;
 };
 
 extern template class ContactDae<2>;

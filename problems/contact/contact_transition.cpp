@@ -114,7 +114,8 @@ bool ContactDae<D>::settle_one_law(DaeState& state, const Bodies& bodies, const 
 /// All closing two-scale contacts at once: the fast phase in the space of the touching contacts, joints held.
 template <int D>
 Transition ContactDae<D>::collide(DaeState& state, Bodies& bodies, const EventLog& log) const {
-  std::vector<int> touching;
+  std::vector<int>& touching = bodies.touching;
+  touching.clear();
   bool is_closing = false;
   for (const int i : contacts_) {
     const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
@@ -245,7 +246,8 @@ Transition ContactDae<D>::collide(DaeState& state, Bodies& bodies, const EventLo
 /// Source: K. G. Murty, Note on a Bard-type scheme for solving the complementarity problem, Opsearch 11 (1974).
 template <int D>
 Transition ContactDae<D>::distribute(DaeState& state, Bodies& bodies, const EventLog& log) const {
-  std::vector<int> candidates;
+  std::vector<int>& candidates = bodies.resting;
+  candidates.clear();
   bool is_settled = true;
   for (const int i : contacts_) {
     const int mode = state.mode.discrete[static_cast<std::size_t>(i)];
@@ -260,7 +262,9 @@ Transition ContactDae<D>::distribute(DaeState& state, Bodies& bodies, const Even
     candidates.push_back(i);
     is_settled = false;
   }
-  DaeMode trial = state.mode;
+  if (is_settled && candidates.empty() && state.mode.held[kHeldRedundant] == 0 && bodies.defect == 0) return {};
+  DaeMode& trial = bodies.trial;
+  trial = state.mode;
   const auto solve = [&] {
     apply_forces(state.t, bodies, nullptr);
     trial.held[kHeldRedundant] = 0;
@@ -271,9 +275,6 @@ Transition ContactDae<D>::distribute(DaeState& state, Bodies& bodies, const Even
     }
     set_accelerations(bodies);
   };
-  if (is_settled && candidates.empty()) {
-    if (state.mode.held[kHeldRedundant] == 0 && bodies.defect == 0) return {};
-  }
   solve();
   const int most = 20 + 20 * static_cast<int>(candidates.size());
   for (int k = 0; k < most && !is_settled; ++k) {

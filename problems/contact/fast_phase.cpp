@@ -15,6 +15,15 @@ constexpr double kMostContactTimes = 400;
 
 using Matrix = Eigen::MatrixXd;
 
+/// Of contacts that depend on one another the least-norm impulses are taken.
+Vector least_norm(const Matrix& B, const Vector& b) {
+  if (b.size() == 1) return B(0, 0) != 0 ? Vector(b / B(0, 0)) : Vector::Zero(1);
+  Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition;
+  decomposition.setThreshold(kRank);
+  decomposition.compute(B);
+  return decomposition.solve(b);
+}
+
 class Resolution {
  public:
   Resolution(const Matrix& A, const Vector& w, const std::vector<Touching>& touching, int tangents)
@@ -179,10 +188,7 @@ class Resolution {
       const Vector answer = A_ * along[at(c)];
       for (int r = 0; r < m; ++r) B(r, c) = answer[rows[at(r)]];
     }
-    Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition;
-    decomposition.setThreshold(kRank);  // of contacts that depend on one another the least-norm impulses are taken
-    decomposition.compute(B);
-    const Vector unknown = decomposition.solve(target.head(m));
+    const Vector unknown = least_norm(B, target.head(m));
     Vector p = Vector::Zero(size);
     for (int c = 0; c < m; ++c) p += unknown[c] * along[at(c)];
     return p;
@@ -260,10 +266,7 @@ class Resolution {
       b[r] = -out_.rates[chosen[at(r)]];
       for (int c = 0; c < m; ++c) B(r, c) = A_(chosen[at(r)], chosen[at(c)]);
     }
-    Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition;
-    decomposition.setThreshold(kRank);
-    decomposition.compute(B);
-    return decomposition.solve(b);
+    return least_norm(B, b);
   }
 
   const Matrix& A_;

@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kSamples = 3;  // a step's end, and two points inside it
 constexpr int kMaxBisections = 200;
+constexpr int kFewSecants = 8;
 constexpr int kMaxLandings = 4;
 constexpr double kSameTime = 4e-16;  // relative: two instants nobody can tell apart
 
@@ -30,6 +31,7 @@ HybridIntegrator::HybridIntegrator(const Dae& dae, const IntegratorOptions& opti
       workspace_(dae.make_workspace()),
       sample_(initial_state_of(dae)) {
   validate(options);
+  if (!options_.on_event) options_.on_event = [](const DaeEvent&) {};
   before_.resize(dae.num_guards());
   after_.resize(dae.num_guards());
   values_.resize(dae.num_guards());
@@ -105,8 +107,7 @@ bool HybridIntegrator::settle(DaeState& state, std::span<const int> fired, bool 
       return fail(IntegrationStatus::no_consistent_state, state, "the position constraints cannot be closed");
     if (!is_consistent && !make_consistent(dae_, newton_, state, workspace_))
       return fail(IntegrationStatus::no_consistent_state, state, why_inconsistent(state));
-    const Transition transition = dae_.transition(
-        state, fired, workspace_, options_.on_event ? options_.on_event : [](const DaeEvent&) {});
+    const Transition transition = dae_.transition(state, fired, workspace_, options_.on_event);
     if (!transition.failure.empty()) return fail(IntegrationStatus::transition_failed, state, transition.failure);
     if (!transition.changed) return true;
     fired = {};
@@ -167,6 +168,7 @@ bool HybridIntegrator::find_crossing(Crossing& crossing) {
     int first = -1;
     for (int i = 0; i < after_.size(); ++i) {
       if (!is_armed_[static_cast<std::size_t>(i)] || after_[i] > 0) continue;
+      if (first >= 0 && guard_at(crossing.t, i) > 0) continue;  // falls later
       const double t = locate(i, left, right);
       if (first < 0 || t < crossing.t) first = i, crossing.t = t;
     }
@@ -185,25 +187,27 @@ bool HybridIntegrator::find_crossing(Crossing& crossing) {
   return false;
 }
 
-/// The upper end of an interval of width event_tolerance in which the guard falls: regula falsi with the Illinois weights, bisection where
-/// that is slow.
+/// The upper end of an interval of width event_tolerance in which the guard falls: regula falsi, the value of an end that stays weighted
+/// by what the other's fell to, and bisection where that is slow.
+/// Source: N. Anderson, A. Bjorck, BIT 13 (1973) 253.
 double HybridIntegrator::locate(int guard, double a, double b) {
   double ga = guard_at(a, guard), gb = guard_at(b, guard);
   if (!(ga > 0)) ga = before_[guard] > 0 ? before_[guard] : std::abs(gb);
   int side = 0;
   for (int k = 0; k < kMaxBisections && b - a > options_.event_tolerance && !is_same_time(a, b); ++k) {
-    double t = k % 4 == 3 ? 0.5 * (a + b) : (a * gb - b * ga) / (gb - ga);
+    double t = k % 3 == 2 && k > kFewSecants ? 0.5 * (a + b) : (a * gb - b * ga) / (gb - ga);
     if (!(t > a && t < b)) t = 0.5 * (a + b);
     const double inside = 0.5 * options_.event_tolerance;  // a root beside an end closes the interval from the other side
     t = std::clamp(t, std::min(a + inside, 0.5 * (a + b)), std::max(b - inside, 0.5 * (a + b)));
     const double g = guard_at(t, guard);
+    const double fell = 1 - g / (g <= 0 ? gb : ga), weight = fell > 0 ? fell : 0.5;
     if (g <= 0) {
       b = t, gb = g;
-      if (side == -1) ga *= 0.5;
+      if (side == -1) ga *= weight;
       side = -1;
     } else {
       a = t, ga = g;
-      if (side == 1) gb *= 0.5;
+      if (side == 1) gb *= weight;
       side = 1;
     }
   }
