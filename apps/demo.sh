@@ -42,10 +42,11 @@ up_to_date() {
 job hover "$tenon" allocate momav --wrenches problems/allocation/hover_sweep.csv --output "$records/hover.csv"
 job compare_classic "$tenon" compare hs071 hs100 --output "$records/compare_classic.csv"
 job compare_momav "$tenon" compare momav --rows 20 --seed 1 --output "$records/compare_momav.csv"
+job flight "$tenon" fly orientation-sweep --output "$records/flight.csv" --events "$records/flight_events.csv"
 job cradle "$tenon" simulate cradle --output "$records/cradle.csv" --events "$records/cradle_events.csv"
 job bouncing_ball "$tenon" simulate bouncing-ball --output "$records/ball.csv" --events "$records/ball_events.csv"
 job bench_allocation "$tenon" bench allocation
-job report "$tenon" report "$records"/{hover,compare_classic,compare_momav}.csv --output "$records/report.html"
+job report "$tenon" report "$records"/{hover,compare_classic,compare_momav,flight}.csv --output "$records/report.html"
 
 echo
 echo "Every job is done; the records are in $records. To see them, open $records/report.html in a browser."

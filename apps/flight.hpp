@@ -18,7 +18,7 @@ struct FlightResult {
   std::string explanation;  // where it is not reached or stopped
   DaeState state;           // the last
   flight::FlightStatistics statistics;
-  double elapsed = 0;       // s
+  double elapsed = 0;  // s
 };
 
 struct FlightObservers {

@@ -122,16 +122,16 @@ Json json_of(const FlightResult& result, const flight::Mission& mission, const s
 std::string text_of(const FlightResult& result, const flight::Mission& mission, const std::string& solver) {
   const FlightStatistics& s = result.statistics;
   const auto moments = [](const Moments& m, double unit, const char* name) {
-    return fmt::format("mean {:.3g} {}, sd {:.3g}, at most {:.3g}", unit * m.mean(), name, unit * m.sd(), unit * m.max());
+    return fmt::format("mean {:.2f} {}, sd {:.2f}, at most {:.2f}", unit * m.mean(), name, unit * m.sd(), unit * m.max());
   };
-  std::string text = fmt::format("{}: {} at t = {:.6g} s; {} ticks of {}, {}\n", mission.name, status_of(result), result.state.t, s.ticks, solver,
-                                 duration_text(result.elapsed));
+  std::string text = fmt::format("{}: {} at t = {:.6g} s; {} ticks of {}, {}\n", mission.name, status_of(result), result.state.t, s.ticks,
+                                 solver, duration_text(result.elapsed));
   const auto line = [&text](const char* what, const std::string& value) { text += fmt::format("  {:<16}{}\n", what, value); };
   line("position error", moments(s.position_error, 1e3, "mm"));
   line("angle error", moments(s.angle_error, kDegrees, "deg"));
   line("allocation", fmt::format("{} solved, {} best_effort, {} fallback; short by at most {:.2g} N, {:.2g} N m",
-                                 s.ticks - s.best_effort - s.allocation_failures, s.best_effort, s.allocation_failures, s.largest_force_error,
-                                 s.largest_torque_error));
+                                 s.ticks - s.best_effort - s.allocation_failures, s.best_effort, s.allocation_failures,
+                                 s.largest_force_error, s.largest_torque_error));
   line("limits", fmt::format("{} times hit, {} times violated", s.limits_hit, s.limits_violated));
   return text;
 }
@@ -148,6 +148,8 @@ int run_fly(const Arguments& given) {
   const std::string solver = arguments.solver.value_or(default_allocator());
   make_allocator(mission.vehicle, solver, {});  // a solver that nobody knows is bad input, not a flight that fails
   const flight::FlightDae dae(mission, allocator_maker(solver));
+  if (const std::string fault = dae.loop_fault(); !fault.empty() && !arguments.quiet)
+    fmt::print(stderr, "tenon: {}: {}\n", mission.name, fault);
   FlightRecord record(arguments, dae);
 
   const FlightResult result = fly(dae, {.on_tick = [&](const DaeState& state, const FlightTick& tick) { return record.add(state, tick); },

@@ -1,10 +1,11 @@
 // Flying: one whole control tick (pose controller and allocation) along a noisy orientation sweep, and a minute of tumbling simulated.
+#include "tenon/apps/flight.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "tenon/apps/benchmark/benchmark.hpp"
-#include "tenon/apps/flight.hpp"
 #include "tenon/problems/flight/mission_file.hpp"
 #include "tenon/problems/flight/noise.hpp"
 
@@ -30,8 +31,8 @@ std::vector<Seen> poses(const Mission& mission) {
         Seen seen;
         seen.reference = tick.reference;
         seen.measurement.position = state.x.head<3>() + mission.sensors.position_noise * noise.normal3();
-        seen.measurement.attitude = Quaterniond(state.x[3], state.x[4], state.x[5], state.x[6]) *
-                                    rotation_of(mission.sensors.attitude_noise * noise.normal3());
+        seen.measurement.attitude =
+            Quaterniond(state.x[3], state.x[4], state.x[5], state.x[6]) * rotation_of(mission.sensors.attitude_noise * noise.normal3());
         out.push_back(seen);
         return true;
       }});

@@ -22,7 +22,10 @@ Vector3d rotated(double w, const Vector3d& v, const Vector3d& f) {
 }  // namespace
 
 FlightDae::FlightDae(Mission mission, MakeAllocator make_allocator)
-    : mission_(std::move(mission)), make_allocator_(std::move(make_allocator)), rotors_(mission_.vehicle), at_{rotors_.size(), mission_.sensors.delay} {}
+    : mission_(std::move(mission)),
+      make_allocator_(std::move(make_allocator)),
+      rotors_(mission_.vehicle),
+      at_{rotors_.size(), mission_.sensors.delay} {}
 
 void FlightDae::initial_state(DaeState& state) const {
   const PoseReference start = mission_.reference.at(0);
@@ -31,10 +34,8 @@ void FlightDae::initial_state(DaeState& state) const {
   state.x.segment<3>(kAttitude + 1) = start.attitude.vec();
   state.x.segment<3>(kVelocity) = start.velocity;
   state.x.segment<3>(kRate) = start.attitude.conjugate() * start.angular_velocity;
-  // it hovers, as the controller takes it to be
-  const RigidBody& body = mission_.controller.body;
-  Wrench hover;
-  hover << start.attitude.conjugate() * Vector3d(0, 0, body.mass * body.gravity), Vector3d::Zero();
+  // it hovers, as heavy as the controller takes it to be
+  const Wrench hover = hover_wrench(0, mission_.controller.body.mass);
   const int n = rotors_.size();
   Vector u(n), a(n);
   LinearAllocation(mission_.vehicle).solve(hover, Vector::Zero(n), u, a);
@@ -50,7 +51,15 @@ void FlightDae::initial_state(DaeState& state) const {
   held.head(at_.commands_size()) = state.x.tail(2 * n).replicate(1 + at_.delay, 1);
 }
 
-Vector3d FlightDae::wind(const DaeMode& mode) const { return mission_.wind.steady + mode.held.segment<3>(at_.gust()); }
+Wrench FlightDae::hover_wrench(double t, double mass) const {
+  Wrench wrench;
+  wrench << mission_.reference.at(t).attitude.conjugate() * Vector3d(0, 0, mass * mission_.vehicle.gravity), Vector3d::Zero();
+  return wrench;
+}
+
+Vector3d FlightDae::wind(const DaeMode& mode) const {
+  return mission_.wind.steady + mode.held.segment<3>(at_.gust());
+}
 
 void FlightDae::actuator_rates(const DaeMode& mode, ConstVectorRef x, VectorRef rates) const {
   const int n = rotors_.size();
@@ -67,7 +76,7 @@ void FlightDae::actuator_rates(const DaeMode& mode, ConstVectorRef x, VectorRef 
 
 void FlightDae::derivatives(const DaeMode& mode, double, ConstVectorRef x, ConstVectorRef, Workspace&, VectorRef xdot, VectorRef y) const {
   const int n = rotors_.size();
-  const Quaterniond q(x[kAttitude], x[kAttitude + 1], x[kAttitude + 2], x[kAttitude + 3]);
+  const Quaterniond q = attitude(x);
   const Vector3d w = x.segment<3>(kRate);
   y = rotors_.wrench(x.segment(kRotors, n), x.segment(kRotors + n, n));
   const RigidBody body{mission_.mass(), mission_.vehicle.inertia, mission_.vehicle.gravity};
@@ -87,8 +96,8 @@ void FlightDae::residual(const DaeMode& mode, const DaePoint& at, Workspace&, Ve
   F.head<3>() = at.xdot.head<3>() - at.x.segment<3>(kVelocity);
   F[kAttitude] = at.xdot[kAttitude] + v.dot(w) / 2;
   F.segment<3>(kAttitude + 1) = at.xdot.segment<3>(kAttitude + 1) - (q0 * w + v.cross(w)) / 2;
-  F.segment<3>(kVelocity) = m * (at.xdot.segment<3>(kVelocity) + mission_.vehicle.gravity * Vector3d::UnitZ()) -
-                            rotated(q0, v, at.y.head<3>()) - wind(mode);
+  F.segment<3>(kVelocity) =
+      m * (at.xdot.segment<3>(kVelocity) + mission_.vehicle.gravity * Vector3d::UnitZ()) - rotated(q0, v, at.y.head<3>()) - wind(mode);
   F.segment<3>(kRate) = inertia.cwiseProduct(at.xdot.segment<3>(kRate)) + w.cross(inertia.cwiseProduct(w)) - at.y.tail<3>();
   actuator_rates(mode, at.x, F.segment(kRotors, 2 * n));
   F.segment(kRotors, 2 * n) = at.xdot.tail(2 * n) - F.segment(kRotors, 2 * n);
@@ -116,8 +125,8 @@ void FlightDae::jacobian(const DaeMode& mode, const DaePoint& at, double alpha, 
       -2 * (v.dot(f) * Matrix3::Identity() + v * f.transpose() - f * v.transpose() - q0 * cross_matrix(f));
   for (int k = 0; k < 3; ++k) J.block<3, 1>(kVelocity, nx + k) = -rotated(q0, v, Vector3d::Unit(k));
 
-  J.block<3, 3>(kRate, kRate) = alpha * Matrix3(inertia.asDiagonal()) + cross_matrix(w) * inertia.asDiagonal() -
-                                cross_matrix(inertia.cwiseProduct(w));
+  J.block<3, 3>(kRate, kRate) =
+      alpha * Matrix3(inertia.asDiagonal()) + cross_matrix(w) * inertia.asDiagonal() - cross_matrix(inertia.cwiseProduct(w));
   J.block<3, 3>(kRate, nx + 3) = -Matrix3::Identity();
 
   for (int i = 0; i < n; ++i) {

@@ -2,8 +2,8 @@
 //
 //     p' = v                        m v' = q W_F - m g e_z + wind
 //     q' = q (0, w)/2               J w' = W_M - w x J w
-//     u' = (u_c - u)/T_r            a' = clip((a_c - a)/T_s, -limit, limit)            u_c = 0 of a rotor that has failed, a' = 0 of a stuck servo
-//     0 = W - sum_i w_i(u_i, a_i)                                                                                     [flight.md, (1.1) to (1.5)]
+//     u' = (u_c - u)/T_r            a' = clip((a_c - a)/T_s, -limit, limit)     u_c = 0: a rotor has failed, a' = 0: a servo is stuck
+//     0 = W - sum_i w_i(u_i, a_i)                                                                                [flight.md, section 1]
 //
 // x = (p, q, v, w, u, a), y = W in body axes. What sensors, controller, allocator and wind hold between two ticks is in the mode; the
 // allocator itself, which is the caller's, lives in the workspace and follows the ticks.
@@ -23,14 +23,14 @@ using MakeAllocator = std::function<std::unique_ptr<Allocator>(const Vehicle&)>;
 
 /// What the last tick did.
 struct FlightTick {
-  PoseReference reference;    // of its time
-  double position_error = 0;  // m, of the true pose
-  double angle_error = 0;     // rad
-  Wrench asked = Wrench::Zero();   // body axes
-  Wrench error = Wrench::Zero();   // what the allocation gives less what was asked
+  PoseReference reference;        // of its time
+  double position_error = 0;      // m, of the true pose
+  double angle_error = 0;         // rad
+  Wrench asked = Wrench::Zero();  // body axes
+  Wrench error = Wrench::Zero();  // what the allocation gives less what was asked
   AllocationStatus status = AllocationStatus::solved;
-  Vector throttle, angle;          // N: as allocated
-  int limits_violated = 0;         // so far: commands beyond a limit of throttle, angle or rate
+  Vector throttle, angle;   // N: as allocated
+  int limits_violated = 0;  // so far: commands beyond a limit of throttle, angle or rate
 };
 
 /// What events are about: "throttle 3", "arm rate 3", "rotor 3", "servo 3".
@@ -65,6 +65,8 @@ class FlightDae final : public Dae {
   std::string output_name(int i) const override;
 
   const Mission& mission() const { return mission_; }
+  /// One line where the gains make a loop that is unstable with its lag, else empty.
+  std::string loop_fault() const;
   /// Of a state at which a tick was.
   void last_tick(const DaeState& state, FlightTick& tick) const;
 
@@ -92,6 +94,11 @@ class FlightDae final : public Dae {
   };
   struct Memory;
 
+  static Quaterniond attitude(ConstVectorRef x) { return {x[kAttitude], x[kAttitude + 1], x[kAttitude + 2], x[kAttitude + 3]}; }
+  /// What holds that mass where the reference is, body axes.
+  Wrench hover_wrench(double t, double mass) const;
+  /// What the rotors that are left give beyond a wrench.
+  Wrench hover_error(double t, const Wrench& wrench) const;
   Vector3d wind(const DaeMode& mode) const;
   /// u' and a'.
   void actuator_rates(const DaeMode& mode, ConstVectorRef x, VectorRef rates) const;
@@ -101,8 +108,6 @@ class FlightDae final : public Dae {
   void tick(DaeState& state, Memory& memory) const;
   void watch_limits(DaeState& state, ConstVectorRef last_angles, const EventLog& log) const;
   std::string lost(const DaeState& state) const;
-  Wrench hover_wrench(double t) const;
-  Wrench hover_error(double t, const Wrench& wrench) const;
 
   Mission mission_;
   MakeAllocator make_allocator_;

@@ -31,10 +31,10 @@ struct FlightStatistics {
   Moments position_error;  // m
   Moments angle_error;     // rad
   long ticks = 0;
-  long best_effort = 0;           // ticks whose wrench the limits forbade
-  long allocation_failures = 0;   // ticks without a solution: the fall-back flew
-  long limits_hit = 0;            // times that a throttle or an arm's rate came to its limit
-  long limits_violated = 0;       // commands beyond a limit
+  long best_effort = 0;                                      // ticks whose wrench the limits forbade
+  long allocation_failures = 0;                              // ticks without a solution: the fall-back flew
+  long limits_hit = 0;                                       // times that a throttle or an arm's rate came to its limit
+  long limits_violated = 0;                                  // commands beyond a limit
   double largest_force_error = 0, largest_torque_error = 0;  // N, N m, of the allocation
 
   void add(const FlightTick& tick) {

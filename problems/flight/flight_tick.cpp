@@ -19,10 +19,7 @@ constexpr double kAtLimit = 1e-6;      // of throttles, angles in rad, and relat
 /// What stands beside the mode. What the controller remembers comes from there; the allocator remembers by itself.
 struct FlightDae::Memory final : Dae::Scratch {
   Memory(const Mission& mission, const MakeAllocator& make)
-      : controller(mission.controller),
-        make_allocator(make),
-        vehicle(mission.vehicle),
-        knows(mission.failures.size()) {}
+      : controller(mission.controller), make_allocator(make), vehicle(mission.vehicle), knows(mission.failures.size()) {}
 
   PoseController controller;
   const MakeAllocator& make_allocator;
@@ -32,9 +29,13 @@ struct FlightDae::Memory final : Dae::Scratch {
   int next_tick = -1;
 };
 
-Dae::Workspace FlightDae::make_workspace() const { return std::make_unique<Memory>(mission_, make_allocator_); }
+Dae::Workspace FlightDae::make_workspace() const {
+  return std::make_unique<Memory>(mission_, make_allocator_);
+}
 
-double FlightDae::next_event_time(const DaeState& state) const { return state.mode.discrete[Layout::kTicks] * mission_.controller.period; }
+double FlightDae::next_event_time(const DaeState& state) const {
+  return state.mode.discrete[Layout::kTicks] * mission_.controller.period;
+}
 
 Transition FlightDae::transition(DaeState& state, std::span<const int>, Workspace& workspace, const EventLog& log) const {
   if (state.t < next_event_time(state) - kSameInstant * mission_.controller.period) return {};
@@ -54,29 +55,27 @@ std::string FlightDae::lost(const DaeState& state) const {
   const double distance = (state.x.head<3>() - mission_.reference.at(state.t).position).norm();
   if (distance <= mission_.lost) return "";
   std::string why = fmt::format("the flight is lost, {:.3g} m from its reference", distance);
-  const Wrench hover = hover_wrench(state.t), error = hover_error(state.t, hover);
+  const Wrench hover = hover_wrench(state.t, mission_.mass()), error = hover_error(state.t, hover);
   if (error.norm() > kShort * hover.norm()) {
-    return why + fmt::format("; hovering there takes {:.3g} N, and the rotors give {:.3g} N", hover.norm(), (hover + error).head<3>().norm());
+    return fmt::format("{}; hovering there takes {:.3g} N, and the rotors give {:.3g} N", why, hover.norm(),
+                       (hover + error).head<3>().norm());
   }
-  const auto unstable = [](const char* what, const Gains& g, double lag) {
-    return fmt::format("; with a lag of {:g} s its {} gains {:g}, {:g}, {:g} make an unstable loop", lag, what, g.proportional, g.integral,
+  const std::string fault = loop_fault();
+  return fault.empty() ? why : why + "; " + fault;
+}
+
+std::string FlightDae::loop_fault() const {
+  const PoseControllerOptions& controller = mission_.controller;
+  const double lag = std::max(0.0, controller.actuator_lag - controller.lead);
+  const auto unstable = [lag](const char* what, const Gains& g) {
+    return fmt::format("with a lag of {:g} s the {} gains {:g}, {:g}, {:g} make an unstable loop", lag, what, g.proportional, g.integral,
                        g.derivative);
   };
-  const PoseControllerOptions& controller = mission_.controller;
-  const double lag = controller.actuator_lag - controller.lead;
-  if (!is_stable(controller.force, mission_.mass(), lag)) return why + unstable("force", controller.force, lag);
-  if (!is_stable(controller.torque, mission_.vehicle.inertia.maxCoeff(), lag)) return why + unstable("torque", controller.torque, lag);
-  return why;
+  if (!is_stable(controller.force, mission_.mass(), lag)) return unstable("force", controller.force);
+  if (!is_stable(controller.torque, mission_.vehicle.inertia.maxCoeff(), lag)) return unstable("torque", controller.torque);
+  return "";
 }
 
-/// What holds the vehicle where it should be, body axes.
-Wrench FlightDae::hover_wrench(double t) const {
-  Wrench wrench;
-  wrench << mission_.reference.at(t).attitude.conjugate() * Vector3d(0, 0, mission_.mass() * mission_.vehicle.gravity), Vector3d::Zero();
-  return wrench;
-}
-
-/// What rotors that are left give beyond it.
 Wrench FlightDae::hover_error(double t, const Wrench& wrench) const {
   const auto allocator = make_allocator_(mission_.vehicle);
   for (const Failure& failure : mission_.failures) {
@@ -109,9 +108,8 @@ bool FlightDae::measure(const DaeState& state, PoseMeasurement& measurement) con
   const Sensors& sensors = mission_.sensors;
   const int k = state.mode.discrete[Layout::kTicks];
   Noise noise(mission_.seed, static_cast<std::uint64_t>(k));
-  const Quaterniond q(state.x[kAttitude], state.x[kAttitude + 1], state.x[kAttitude + 2], state.x[kAttitude + 3]);
   measurement.position = state.x.head<3>() + sensors.position_noise * noise.normal3();
-  measurement.attitude = q * rotation_of(sensors.attitude_noise * noise.normal3());
+  measurement.attitude = attitude(state.x) * rotation_of(sensors.attitude_noise * noise.normal3());
   if (k > 0) return sensors.drop_out == 0 || noise.uniform() > sensors.drop_out;
   measurement.velocity = state.x.segment<3>(kVelocity);  // an observer starts from what is known
   measurement.angular_velocity = state.x.segment<3>(kRate);
@@ -145,7 +143,8 @@ void FlightDae::tick(DaeState& state, Memory& memory) const {
   const bool is_seen = measure(state, measurement);
   auto remembered = held.segment<PoseControllerState::kSize>(at_.controller());
   memory.controller.reset(PoseControllerState::read(remembered));
-  const Wrench asked = memory.controller.tick(is_seen ? &measurement : nullptr, mission_.reference.at(state.t + mission_.controller.lead));
+  const PoseReference reference = mission_.reference.at(state.t + mission_.controller.lead);
+  const Wrench asked = memory.controller.tick(is_seen ? &measurement : nullptr, reference);
   const Allocation& allocation = memory.allocator->allocate(asked, mission_.controller.period);
   memory.controller.given(asked + allocation.error, allocation.status != AllocationStatus::solved);
   memory.controller.state().write(remembered);
@@ -182,9 +181,8 @@ void FlightDae::last_tick(const DaeState& state, FlightTick& out) const {
   const Vector& held = state.mode.held;
   const PoseControllerState controller = PoseControllerState::read(held.segment<PoseControllerState::kSize>(at_.controller()));
   out.reference = mission_.reference.at(state.t);
-  const Quaterniond q(state.x[kAttitude], state.x[kAttitude + 1], state.x[kAttitude + 2], state.x[kAttitude + 3]);
   out.position_error = (state.x.head<3>() - out.reference.position).norm();
-  out.angle_error = rotation_vector(out.reference.attitude.conjugate() * q).norm();
+  out.angle_error = rotation_vector(out.reference.attitude.conjugate() * attitude(state.x)).norm();
   out.error = held.segment<6>(at_.error());
   out.asked = controller.asked - out.error;
   out.status = static_cast<AllocationStatus>(state.mode.discrete[Layout::kStatus]);
@@ -195,7 +193,9 @@ void FlightDae::last_tick(const DaeState& state, FlightTick& out) const {
 
 // --- the record ------------------------------------------------------------------------------------------------------------------------
 
-int FlightDae::num_outputs() const { return 7 + 2 + 3 + 12 + 3 * rotors_.size(); }
+int FlightDae::num_outputs() const {
+  return 7 + 2 + 3 + 12 + 3 * rotors_.size();
+}
 
 void FlightDae::outputs(const DaeState& state, Workspace&, VectorRef values) const {
   const int n = rotors_.size();
@@ -207,9 +207,10 @@ void FlightDae::outputs(const DaeState& state, Workspace&, VectorRef values) con
 }
 
 std::string FlightDae::output_name(int i) const {
-  static const char* const names[] = {"x_ref",   "y_ref",    "z_ref",    "qw_ref",   "qx_ref",   "qy_ref",   "qz_ref",   "position_error",
-                                      "angle_error", "wind_x",   "wind_y",   "wind_z",   "Fx_asked", "Fy_asked", "Fz_asked", "Mx_asked",
-                                      "My_asked", "Mz_asked", "Fx_error", "Fy_error", "Fz_error", "Mx_error", "My_error", "Mz_error"};
+  static const char* const names[] = {"x_ref",    "y_ref",          "z_ref",       "qw_ref",   "qx_ref",   "qy_ref",
+                                      "qz_ref",   "position_error", "angle_error", "wind_x",   "wind_y",   "wind_z",
+                                      "Fx_asked", "Fy_asked",       "Fz_asked",    "Mx_asked", "My_asked", "Mz_asked",
+                                      "Fx_error", "Fy_error",       "Fz_error",    "Mx_error", "My_error", "Mz_error"};
   constexpr int kNamed = std::size(names);
   if (i < kNamed) return names[i];
   const int n = rotors_.size(), k = i - kNamed;

@@ -34,9 +34,9 @@ struct Wind {
 struct Failure {
   enum class Kind { rotor, servo };  // no thrust any more; the arm stands still
   Kind kind = Kind::rotor;
-  int rotor = 0;                     // from 0
-  double t = 0;                      // s
-  double detection = 0.1;            // s until the allocator knows; infinity: never
+  int rotor = 0;           // from 0
+  double t = 0;            // s
+  double detection = 0.1;  // s until the allocator knows; infinity: never
 };
 
 struct Mission {
@@ -47,13 +47,13 @@ struct Mission {
   Sensors sensors;
   Actuators actuators;
   Wind wind;
-  double payload = 0;                // kg at the centre of mass
+  double payload = 0;  // kg at the centre of mass
   std::vector<Failure> failures;
-  double duration = 1;               // s
+  double duration = 1;  // s
   double rtol = 1e-6;
-  int output_ticks = 4;              // a row of the record every so many ticks
-  double lost = 2;                   // m: so far from its reference a flight has failed
-  std::uint64_t seed = 1;            // of noise, gusts and drop-outs
+  int output_ticks = 4;    // a row of the record every so many ticks
+  double lost = 1;         // m: so far from its reference a flight has failed
+  std::uint64_t seed = 1;  // of noise, gusts and drop-outs
 
   double mass() const { return vehicle.mass + payload; }
 };

@@ -107,27 +107,29 @@ void read_reference(const Table& root, Mission& mission) {
 void read_gains(const Table& table, const std::string& key, Gains& gains) {
   if (table.has(key)) {
     const Vector3d g = table.vector3(key);
-    if (g.minCoeff() < 0) throw InputError(table.position(key), fmt::format("{} is [{}, {}, {}]", key, g[0], g[1], g[2]), "no gain below 0");
+    if (g.minCoeff() < 0)
+      throw InputError(table.position(key), fmt::format("{} is [{}, {}, {}]", key, g[0], g[1], g[2]), "no gain below 0");
     gains.proportional = g[0], gains.integral = g[1], gains.derivative = g[2];
   }
-  gains.integral_limit = not_negative(table, key + "_limit", gains.integral_limit);
+  gains.integral_limit = not_negative(table, key + "_integral_limit", gains.integral_limit);
 }
 
 void read_controller(const Table& root, Mission& mission) {
   PoseControllerOptions& options = mission.controller;
   options.body = {mission.vehicle.mass, mission.vehicle.inertia, mission.vehicle.gravity};
   options.actuator_lag = (mission.actuators.rotor_lag + mission.actuators.servo_lag) / 2;
-  const auto table = root.table("controller", {"rate", "force", "torque", "force_limit", "torque_limit", "observer", "disturbance", "mass",
-                                               "actuator_lag", "lag_compensation"});
+  const auto table = root.table("controller", {"rate", "force", "torque", "force_integral_limit", "torque_integral_limit", "feedback_limit",
+                                               "observer", "disturbance", "mass", "actuator_lag", "lag_compensation"});
   if (table) {
     options.period = 1 / positive(*table, "rate", 1 / options.period);
     read_gains(*table, "force", options.force);
     read_gains(*table, "torque", options.torque);
+    options.feedback_limit = positive(*table, "feedback_limit", options.feedback_limit);
     options.observer_bandwidth = positive(*table, "observer", options.observer_bandwidth);
     options.disturbance_share = table->number("disturbance", options.disturbance_share);
     options.body.mass = positive(*table, "mass", options.body.mass);
     options.actuator_lag = not_negative(*table, "actuator_lag", options.actuator_lag);
-    // (4.6) the lag, half of the hold, the delay
+    // (4.4) the lag, half of the hold, the delay
     if (table->flag("lag_compensation", false)) options.lead = options.actuator_lag + options.period * (0.5 + mission.sensors.delay);
   }
   options.actuator_lag += options.period * mission.sensors.delay;
@@ -158,6 +160,11 @@ void read_surroundings(const Table& root, Mission& mission) {
     mission.wind.correlation = positive(*table, "correlation", mission.wind.correlation);
   }
   if (const auto table = root.table("payload", {"mass"})) mission.payload = not_negative(*table, "mass", 0);
+  for (int i = 0; i < mission.vehicle.num_rotors(); ++i) {  // those that stand in the vehicle's own file
+    const Rotor& rotor = mission.vehicle.rotors[static_cast<std::size_t>(i)];
+    if (std::isfinite(rotor.fails_at)) mission.failures.push_back({Failure::Kind::rotor, i, rotor.fails_at});
+    if (std::isfinite(rotor.servo_sticks_at)) mission.failures.push_back({Failure::Kind::servo, i, rotor.servo_sticks_at});
+  }
   for (const Table& table : root.tables("failure", {"kind", "rotor", "t", "detection"})) {
     Failure failure;
     failure.kind = static_cast<Failure::Kind>(choice(table, "kind", {"rotor", "servo"}));
@@ -186,8 +193,9 @@ void read_simulation(const Table& root, Mission& mission) {
 }  // namespace
 
 Mission parse_mission(const std::string& text, const std::string& file, const std::vector<std::string>& overrides) {
-  const Table root = toml_file::Document(text, file, overrides)
-                         .root({"name", "vehicle", "reference", "controller", "sensors", "actuators", "wind", "failure", "payload", "simulation"});
+  const Table root =
+      toml_file::Document(text, file, overrides)
+          .root({"name", "vehicle", "reference", "controller", "sensors", "actuators", "wind", "failure", "payload", "simulation"});
   Mission mission;
   mission.name = root.text("name", std::filesystem::path(file).stem().string());
   mission.vehicle = read_vehicle(root);
@@ -198,9 +206,13 @@ Mission parse_mission(const std::string& text, const std::string& file, const st
   return mission;
 }
 
-std::vector<std::string> builtin_missions() { return names_of(embedded_missions()); }
+std::vector<std::string> builtin_missions() {
+  return names_of(embedded_missions());
+}
 
-std::string describe_builtin_mission(const std::string& name) { return description_of(name, embedded_missions()); }
+std::string describe_builtin_mission(const std::string& name) {
+  return description_of(name, embedded_missions());
+}
 
 Mission load_mission(const std::string& name_or_path, const std::vector<std::string>& overrides) {
   const NamedFile file = open_named_file("mission", name_or_path, embedded_missions());

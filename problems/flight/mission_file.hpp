@@ -4,8 +4,9 @@
 //     [reference]         kind = "legs" | "tumble" | "figure-eight", position, turn_deg (at the start)
 //                         rate_deg, ramp of a tumble; period, ramp, size, tilt_deg of a figure-eight
 //     [[reference.leg]]   duration (s; 0 for a step), position (at its end; left out: where it was), turn_deg (rotation vector, world axes)
-//     [controller]        rate (Hz), force = [P, I, D], torque = [P, I, D], force_limit, torque_limit (of the integrals), observer (rad/s),
-//                         disturbance (share subtracted, 0 to 1), mass and actuator_lag (as it takes them to be), lag_compensation
+//     [controller]        rate (Hz), force = [P, I, D], torque = [P, I, D], force_integral_limit (N), torque_integral_limit (N m),
+//                         feedback_limit (N), observer (rad/s), disturbance (share subtracted, 0 to 1), lag_compensation = true | false,
+//                         mass and actuator_lag (as it takes them to be)
 //     [sensors]           position_noise (m), attitude_noise_deg, delay (ticks), drop_out (probability)
 //     [actuators]         rotor_lag, servo_lag (s)
 //     [wind]              steady (N), deviation (N), correlation (s)

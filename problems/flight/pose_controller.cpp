@@ -29,6 +29,7 @@ void validate(const PoseControllerOptions& options) {
   require(options.body.mass > 0, "mass", options.body.mass, "more than 0 kg");
   require(options.body.inertia.minCoeff() > 0, "the least inertia", options.body.inertia.minCoeff(), "more than 0 kg m^2");
   require(options.period > 0, "period", options.period, "more than 0 s");
+  require(options.feedback_limit > 0, "feedback_limit", options.feedback_limit, "more than 0 N");
   require(options.observer_bandwidth > 0, "observer_bandwidth", options.observer_bandwidth, "more than 0 rad/s");
   require(options.disturbance_share >= 0 && options.disturbance_share <= 1, "disturbance_share", options.disturbance_share, "0 to 1");
   require(options.actuator_lag >= 0, "actuator_lag", options.actuator_lag, "0 s or more");
@@ -79,14 +80,15 @@ PoseControllerState PoseControllerState::read(const Eigen::Ref<const Vector>& nu
 PoseController::PoseController(const PoseControllerOptions& options)
     : options_(validated(options)),
       observer_(options.body, options.observer_bandwidth, options.period),
-      acting_share_(options.actuator_lag > 0 ? -std::expm1(-options.period / options.actuator_lag) : 1) {}
+      acting_share_(options.actuator_lag > 0 ? -std::expm1(-options.period / options.actuator_lag) : 1),
+      mean_share_(1 - acting_share_ * options.actuator_lag / options.period) {}
 
 const Wrench& PoseController::tick(const PoseMeasurement* measurement, const PoseReference& reference) {
   estimate(measurement);
   const RigidBody& body = options_.body;
   const BodyEstimate& now = state_.estimate;
 
-  // (4.5) where it will be when the command acts, moving on as the reference does
+  // (4.4) where it will be when the command acts, moving on as the reference does
   const double lead = options_.lead;
   const Vector3d turn = now.attitude.conjugate() * reference.angular_acceleration;  // body axes
   const Vector3d velocity = now.velocity + lead * reference.acceleration;
@@ -103,16 +105,18 @@ const Wrench& PoseController::tick(const PoseMeasurement* measurement, const Pos
 
   // (3.3)
   const double share = options_.disturbance_share;
-  const Vector3d force = -options_.force.proportional * e - state_.force_integral -
-                         options_.force.derivative * (velocity - reference.velocity) +
-                         body.mass * (reference.acceleration + body.gravity * Vector3d::UnitZ() - share * now.unexplained);
+  Vector3d feedback =
+      -options_.force.proportional * e - state_.force_integral - options_.force.derivative * (velocity - reference.velocity);
+  const double length = feedback.norm();
+  state_.is_short = length > options_.feedback_limit;
+  if (state_.is_short) feedback *= options_.feedback_limit / length;
+  const Vector3d force = feedback + body.mass * (reference.acceleration + body.gravity * Vector3d::UnitZ() - share * now.unexplained);
   // (3.4)
   const Vector3d torque = -options_.torque.proportional * r - to_body * state_.torque_integral -
                           options_.torque.derivative * (rate - to_body * reference.angular_velocity) +
                           body.inertia.cwiseProduct(to_body * reference.angular_acceleration - share * now.unexplained_angular) +
                           rate.cross(body.inertia.cwiseProduct(rate));
   state_.asked << to_body * force, torque;
-  state_.is_short = false;
   return state_.asked;
 }
 
@@ -127,10 +131,10 @@ void PoseController::estimate(const PoseMeasurement* measurement) {
     state_.has_estimate = true;
     return;
   }
-  // (4.1) the wrench that acts, in the middle of the period
-  const Wrench change = acting_share_ * (state_.asked - state_.acting);
-  observer_.predict(state_.acting + change / 2, state_.estimate);
-  state_.acting += change;
+  // (4.1) the wrench that acts, behind the one asked by a first-order lag
+  const Wrench way = state_.asked - state_.acting;
+  observer_.predict(state_.acting + mean_share_ * way, state_.estimate);
+  state_.acting += acting_share_ * way;
   if (measurement) observer_.correct(*measurement, state_.estimate);
 }
 

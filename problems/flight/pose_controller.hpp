@@ -3,7 +3,8 @@
 //     F = -P e - I int e - D e' + m (a_ref + g e_z) - k F_est                    e = p - p_ref                     world axes
 //     M = -P r - I int r - D (w - w_ref) + J alpha_ref + w x J w - k M_est       r of q_E = q_ref^-1 q             world axes
 //
-// |I int e| stays within a limit on each axis, and does not grow while the allocation is short of the wrench (conditional integration).
+// |I int e| stays within a limit on each axis, and does not grow while the force is shortened or the allocation short of the wrench
+// (conditional integration). The feedback of the force is shortened to its limit: beyond what rotors can give, a force would cost torque.
 // Where the actuators' lag is compensated, pose and rates are predicted `lead` seconds ahead, to when the command acts; the reference is
 // then that of t + lead. Sources: MOMAV controller notes; flight.md, sections 3 and 4.
 //
@@ -20,14 +21,15 @@ struct Gains {
 };
 
 struct PoseControllerOptions {
-  RigidBody body;                          // as the controller takes it to be
-  Gains force{100, 200, 18, 10};           // N/m, N/(m s), N s/m, N
-  Gains torque{1.8, 3.6, 0.25, 0.8};       // N m/rad, N m/(rad s), N m s/rad, N m
-  double period = 1.0 / 240;               // s
-  double observer_bandwidth = 20;          // rad/s
-  double disturbance_share = 0;            // k: how much of the estimated disturbance wrench is subtracted, 0 to 1
-  double actuator_lag = 0.03;              // s: how far the wrench that acts lags behind the one asked, as the observer takes it to be
-  double lead = 0;                         // s
+  RigidBody body;                     // as the controller takes it to be
+  Gains force{100, 200, 18, 10};      // N/m, N/(m s), N s/m, N
+  Gains torque{1.8, 3.6, 0.25, 0.8};  // N m/rad, N m/(rad s), N m s/rad, N m
+  double period = 1.0 / 240;          // s
+  double feedback_limit = 15;         // N: of |P e + I int e + D e'|
+  double observer_bandwidth = 20;     // rad/s
+  double disturbance_share = 0;       // k: how much of the estimated disturbance wrench is subtracted, 0 to 1
+  double actuator_lag = 0.03;         // s: how far the wrench that acts lags behind the one asked, as the observer takes it to be
+  double lead = 0;                    // s
 };
 
 /// Throws std::invalid_argument, naming the option, where one makes no sense.
@@ -40,7 +42,7 @@ struct PoseControllerState {
   Vector3d torque_integral{0, 0, 0};  // N m
   Wrench acting = Wrench::Zero();     // what is believed to act, body axes
   Wrench asked = Wrench::Zero();      // the last command
-  bool is_short = false;              // the allocation could not give it
+  bool is_short = false;              // it was shortened, or the allocation could not give it
   bool has_estimate = false;
 
   static constexpr int kSize = 39;
@@ -63,7 +65,7 @@ class PoseController {
   /// What the allocation gave in place of the last wrench.
   void given(const Wrench& wrench, bool is_short) {
     state_.asked = wrench;
-    state_.is_short = is_short;
+    state_.is_short |= is_short;
   }
 
   const PoseControllerOptions& options() const { return options_; }
@@ -74,7 +76,7 @@ class PoseController {
 
   PoseControllerOptions options_;
   PoseObserver observer_;
-  double acting_share_;  // of the way from the wrench that acts to the one asked, in a period
+  double acting_share_, mean_share_;  // of the way from the wrench that acts to the one asked: after a period, and on average
   PoseControllerState state_;
 };
 

@@ -1,6 +1,6 @@
 // Position, velocity and disturbance of a rigid body from noisy poses, one tick after the other.
 //
-// Predicted by the wrench believed to act, corrected by the pose's innovation e with the gains of a fading memory of three states  [flight.md, (4)]
+// Predicted by the wrench believed to act, corrected by the pose's innovation e with the gains of a fading memory  [flight.md, (4.2)]
 //
 //     x += (1 - b^3) e,    v += 3/2 (1 - b)^2 (1 + b) e/T,    d += (1 - b)^3 e/T^2,      b = exp(-w T)
 //
@@ -14,9 +14,9 @@
 namespace tenon::flight {
 
 struct RigidBody {
-  double mass = 1;               // kg
-  Vector3d inertia{1, 1, 1};     // kg m^2, diagonal, body axes
-  double gravity = 9.80665;      // m/s^2
+  double mass = 1;            // kg
+  Vector3d inertia{1, 1, 1};  // kg m^2, diagonal, body axes
+  double gravity = 9.80665;   // m/s^2
 
   /// Body axes, of the angular velocity there.
   Vector3d angular_acceleration(const Vector3d& torque, const Vector3d& rate) const {
@@ -29,12 +29,12 @@ struct RigidBody {
 };
 
 struct BodyEstimate {
-  Vector3d position{0, 0, 0};              // m, world axes
-  Vector3d velocity{0, 0, 0};              // m/s
-  Vector3d unexplained{0, 0, 0};           // m/s^2, world axes
-  Quaterniond attitude{1, 0, 0, 0};        // body to world
-  Vector3d rate{0, 0, 0};                  // rad/s, body axes
-  Vector3d unexplained_angular{0, 0, 0};   // rad/s^2, body axes
+  Vector3d position{0, 0, 0};             // m, world axes
+  Vector3d velocity{0, 0, 0};             // m/s
+  Vector3d unexplained{0, 0, 0};          // m/s^2, world axes
+  Quaterniond attitude{1, 0, 0, 0};       // body to world
+  Vector3d rate{0, 0, 0};                 // rad/s, body axes
+  Vector3d unexplained_angular{0, 0, 0};  // rad/s^2, body axes
 };
 
 class PoseObserver {

@@ -17,8 +17,7 @@ Moving smooth_step(double t, double duration) {
   if (t <= 0 && duration > 0) return {0, 0, 0};
   if (t >= duration) return {1, 0, 0};
   const double x = t / duration, back = 1 - x;
-  return {x * x * x * (10 + x * (-15 + 6 * x)), 30 * x * x * back * back / duration,
-          60 * x * back * (1 - 2 * x) / (duration * duration)};
+  return {x * x * x * (10 + x * (-15 + 6 * x)), 30 * x * x * back * back / duration, 60 * x * back * (1 - 2 * x) / (duration * duration)};
 }
 
 /// (2.3) an angle whose rate rises smoothly within the ramp.

@@ -1,6 +1,5 @@
 #include "tenon/problems/flight/rotors.hpp"
 
-#include <Eigen/Geometry>
 #include <cmath>
 
 #include "tenon/problems/allocation/throttle_map.hpp"
@@ -38,8 +37,8 @@ void Rotors::jacobian(ConstVectorRef u, ConstVectorRef a, Eigen::Ref<Eigen::Matr
     const double c = std::cos(a[i]), s = std::sin(a[i]);
     by_u.col(i) = throttle_map_slope(r.thrust, u[i]) * (r.force[0] + c * r.force[1] + s * r.force[2]) +
                   throttle_map_slope(r.drag, u[i]) * (r.torque[0] + c * r.torque[1] + s * r.torque[2]);
-    by_a.col(i) = throttle_map(r.thrust, u[i]) * (c * r.force[2] - s * r.force[1]) +
-                  throttle_map(r.drag, u[i]) * (c * r.torque[2] - s * r.torque[1]);
+    by_a.col(i) =
+        throttle_map(r.thrust, u[i]) * (c * r.force[2] - s * r.force[1]) + throttle_map(r.drag, u[i]) * (c * r.torque[2] - s * r.torque[1]);
   }
 }
 

@@ -1,6 +1,6 @@
 // What the rotors give at throttles and arm angles, with its derivatives, by the true thrust and torque maps.
 //
-//     W = sum_i [ mu n ; mu (r x n) + s tau n ],    n(a) = p_0 + cos a p_1 + sin a p_2                             [allocation.md, section 1]
+//     W = sum_i [ mu n ; mu (r x n) + s tau n ],    n(a) = p_0 + cos a p_1 + sin a p_2                           [allocation.md, section 1]
 #pragma once
 
 #include <vector>
