@@ -159,6 +159,34 @@ TEST_F(ReportPage, EveryControlHasANameAndNothingStandsOutOfAPhone) {
   expect_silence();
 }
 
+TEST_F(ReportPage, AMapOverDirectionsIsChosenByQuantityAndFailure) {
+  std::string rows;
+  for (const char* row : {"1,0,0,0.9,10,0.7,", "-1,0,0,0.8,11,,", "0,1,0,1,12,0.75,", "0,-1,0,1,13,0.8,", "0,0,1,1,14,0.9,8", "0,0,-1,1,15,0.95,9"}) rows += row + std::string("\n");
+  open({folder_.write("envelope.csv", "nx,ny,nz,X1,force,X1_failed2,force_failed2\n" + rows)});
+  browser().evaluate("report.showAll()");
+  const auto choose = [&](const std::string& label, const std::string& value) {
+    browser().evaluate("(() => { const s = document.querySelector('select[aria-label=" + label + "]'); s.value = '" + value +
+                       "'; s.dispatchEvent(new Event('change')); })()");
+  };
+  const auto shown = [&](const std::string& what) { return browser().evaluate("report.parts[0]." + what); };
+  EXPECT_EQ(shown("values[0]"), 0.9);
+  EXPECT_EQ(shown("least"), 0.7) << "all cases of a quantity share a scale";
+  EXPECT_EQ(shown("none.hidden"), true);
+  choose("Failure", "2");
+  EXPECT_EQ(shown("values[2]"), 0.75);
+  EXPECT_EQ(shown("none.hidden"), false) << "the vehicle cannot hover along -x";
+  choose("Quantity", "force");
+  EXPECT_EQ(shown("values[5]"), 9);
+  EXPECT_EQ(shown("most"), 15);
+  EXPECT_EQ(browser().evaluate("document.querySelectorAll('select[aria-label=Quantity] option').length"), 2);
+  // The middle of the map looks along +x, where the force is 10 on a scale from 8 to 15.
+  choose("Failure", "0");
+  const nlohmann::json middle = browser().evaluate(
+      "(() => { const c = report.parts[0].map; return [...c.getContext('2d').getImageData(c.width / 2 + 12, c.height / 2 + 12, 1, 1).data]; })()");
+  EXPECT_EQ(middle, (nlohmann::json{42, 101, 141, 255}));
+  expect_silence();
+}
+
 TEST_F(ReportPage, LightTurnsToDark) {
   open(write_bouncing_ball(folder_), "#theme=light");
   const nlohmann::json light = browser().evaluate("getComputedStyle(document.body).backgroundColor");

@@ -35,3 +35,4 @@ picture cradle 1280x800 't=2.3&theme=light' simulate cradle
 picture car 1280x800 't=1.03&theme=dark' simulate car
 picture compare 1280x800 'theme=light' compare "${classic[@]}"
 picture convergence 1280x800 'theme=light' solve hs106
+picture envelope 1280x560 'theme=light' envelope momav
