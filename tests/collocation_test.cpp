@@ -144,7 +144,7 @@ Ocp free_motion(std::shared_ptr<const Dae> dae, const Vector& start, double dura
 
 void expect_order(const Ocp& ocp, const std::array<int, 3>& intervals) {
   Ocp fine = ocp;
-  fine.phases.front().intervals = 400;
+  fine.phases.front().intervals = 100;
   const Collocation reference(fine, 4);
   Point point(reference.num_variables(), reference.num_constraints());
   reference.initial_point(point.x);
