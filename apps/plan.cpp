@@ -4,15 +4,14 @@
 #include <algorithm>
 
 #include "tenon/apps/default_solver.hpp"
+#include "tenon/apps/interrupt.hpp"
 #include "tenon/apps/make_report.hpp"
 #include "tenon/apps/next_step.hpp"
 #include "tenon/apps/observers.hpp"
 #include "tenon/apps/plan_obstacles.hpp"
-#include "tenon/apps/interrupt.hpp"
 #include "tenon/apps/result_json.hpp"
 #include "tenon/apps/table.hpp"
 #include "tenon/apps/verb.hpp"
-#include "tenon/core/explanation.hpp"
 #include "tenon/core/trajectory.hpp"
 #include "tenon/mpc/planner.hpp"
 #include "tenon/problems/optimal_control/ocp_scene.hpp"
@@ -22,7 +21,6 @@ namespace tenon {
 namespace {
 
 constexpr int kRowsOfAnInterval = 5;
-constexpr std::size_t kSentencesShown = 8;
 
 /// What a phase took: its intervals, and when it is over.
 struct PhaseSummary {
@@ -55,7 +53,21 @@ void write_trajectory(const std::string& path, const Dae& dae, const PlannerOutc
   if (succeeded(outcome.result.status)) csv.finish();
 }
 
-Json json_of(const OcpScene& scene, const PlannerOutcome& outcome, const std::string& solver, const std::vector<Obstacle>& obstacles) {
+Json json_of(const std::vector<Obstacle>& obstacles) {
+  Json list = Json::array();
+  for (const Obstacle& o : obstacles) {
+    list.push(Json::object()
+                  .set("name", o.limit.name)
+                  .set("kind", o.limit.is_bound ? "bound" : "row")
+                  .set("value", o.limit.value)
+                  .set("violation", o.limit.violation)
+                  .set("stage", o.stage)
+                  .set("t", o.t));
+  }
+  return list;
+}
+
+Json json_of(const OcpScene& scene, const PlannerOutcome& outcome, const std::string& solver, const Obstacles& obstacles) {
   const Dae& dae = *scene.ocp.dae;
   const Result& result = outcome.result;
   Json phases = Json::array(), end_error = Json::object();
@@ -79,19 +91,8 @@ Json json_of(const OcpScene& scene, const PlannerOutcome& outcome, const std::st
                                    .set("error", outcome.error.worst)
                                    .set("tolerance", scene.tolerance)
                                    .set("end_error", end_error));
-  if (result.status == Status::solved) return json;
-  json.set("explanation", explain(*outcome.program, outcome.point, result).sentences);
-  if (obstacles.empty()) return json;
-  Json list = Json::array();
-  for (const Obstacle& o : obstacles) {
-    list.push(Json::object()
-                  .set("name", o.limit.name)
-                  .set("kind", o.limit.is_bound ? "bound" : "row")
-                  .set("violation", o.limit.violation)
-                  .set("stage", o.stage)
-                  .set("t", o.t));
-  }
-  return json.set("infeasible_constraints", list);
+  if (obstacles.violated.empty()) return json;
+  return json.set("infeasible_constraints", json_of(obstacles.violated)).set("held_back_by", json_of(obstacles.holding));
 }
 
 std::string text_of(const OcpScene& scene, const PlannerOutcome& outcome, const std::string& solver) {
@@ -109,9 +110,6 @@ std::string text_of(const OcpScene& scene, const PlannerOutcome& outcome, const 
   line("at the end", fmt::format("{:.2g} in {}, open loop", end, scene.ocp.dae->state_name(static_cast<int>(worst))));
   line("residual", fmt::format("stationarity {:.2e}, primal {:.2e}, complementarity {:.2e}", result.residual.stationarity, result.residual.primal,
                                result.residual.complementarity));
-  const std::vector<std::string> sentences = explain(*outcome.program, outcome.point, result).sentences;
-  for (std::size_t k = 0; k < std::min(sentences.size(), kSentencesShown); ++k) text += sentences[k] + "\n";
-  if (sentences.size() > kSentencesShown) text += fmt::format("  and {} more: see --json\n", sentences.size() - kSentencesShown);
   if (!next_step(result.status).empty()) line("next", std::string(next_step(result.status)));
   return text;
 }
@@ -140,13 +138,13 @@ int run_plan(const Arguments& given) {
   const bool is_done = succeeded(outcome.result.status);
   const std::string output = arguments.output.empty() && !arguments.json ? "-" : arguments.output;
   if (!output.empty()) write_trajectory(output, *scene.ocp.dae, outcome);
-  std::vector<Obstacle> obstacles;
+  Obstacles obstacles;
   if (is_done) {
     write_scenery(scene.scenery, arguments.output);
     make_report(arguments, {arguments.output, arguments.trace});
   } else if (!interrupted()) {
     obstacles = obstacles_of(outcome);
-    fmt::print(stderr, "tenon: {}: {}\n", scene.ocp.name, say_no_plan(outcome, obstacles));
+    fmt::print(stderr, "tenon: {}: {}\n", scene.ocp.name, obstacles.text(outcome.result.status));
   }
   if (arguments.json)
     print(json_of(scene, outcome, solver, obstacles));

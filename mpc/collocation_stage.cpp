@@ -106,7 +106,7 @@ void CollocationStage::add_term(StageTerm term, const Box& box) {
   terms_.push_back(std::move(term));
 }
 
-// h(X_i) >= 0, lambda h(X_0) <= eps, lambda h(X_s) <= eps;   or   w(X_i, Y_i, u) >= 0, lambda w(X_s, Y_s, u) <= eps          (9), (10)
+// h(X_i) >= 0, lambda h(X_0) <= eps, lambda h(X_s) <= eps;   or   w(X_i, Y_i, u) >= 0, lambda w(X_s, Y_s, u) <= eps          (8), (10)
 void CollocationStage::add_contacts(const Complementarity& contact) {
   const int lambda = u_at() + contact.first_input, s = points();
   if (contact.product == Complementarity::Product::gap) {

@@ -9,6 +9,7 @@ void add_flight(std::vector<Benchmark>& rows);
 void add_envelope(std::vector<Benchmark>& rows);
 void add_linear_allocation(std::vector<Benchmark>& rows);
 void add_linear_quadratic(std::vector<Benchmark>& rows);
+void add_plan(std::vector<Benchmark>& rows);
 void add_swing_up(std::vector<Benchmark>& rows);
 
 std::vector<Benchmark> benchmarks() {
@@ -17,6 +18,7 @@ std::vector<Benchmark> benchmarks() {
   add_linear_allocation(rows);
   add_swing_up(rows);
   add_linear_quadratic(rows);
+  add_plan(rows);
   add_contact(rows);
   add_delta(rows);
   add_flight(rows);
