@@ -10,6 +10,7 @@ void add_envelope(std::vector<Benchmark>& rows);
 void add_linear_allocation(std::vector<Benchmark>& rows);
 void add_linear_quadratic(std::vector<Benchmark>& rows);
 void add_plan(std::vector<Benchmark>& rows);
+void add_receding_horizon(std::vector<Benchmark>& rows);
 void add_swing_up(std::vector<Benchmark>& rows);
 
 std::vector<Benchmark> benchmarks() {
@@ -23,6 +24,7 @@ std::vector<Benchmark> benchmarks() {
   add_delta(rows);
   add_flight(rows);
   add_envelope(rows);
+  add_receding_horizon(rows);
   return rows;
 }
 
