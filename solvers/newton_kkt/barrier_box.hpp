@@ -55,6 +55,7 @@ class BarrierBox {
       any_fixed_ |= fixed;
       sides_ += int(below) + int(above);
     }
+    if (sides_ == 0) reciprocal_.lower.setZero(), reciprocal_.upper.setZero();  // of the solve before, which may have had some
   }
 
   /// Number of finite sides; 0 means that there is no barrier at all.
