@@ -35,7 +35,7 @@ struct EnvelopeMap {
   long failures = 0;
   std::vector<std::string> unreachable;
 
-  /// "momav", or "rotor 3 failed".
+  /// "healthy", or "rotor 3 failed".
   std::string title() const { return failed < 0 ? "healthy" : "rotor " + std::to_string(failed + 1) + " failed"; }
   /// What its columns end with: nothing, or "_failed3".
   std::string suffix() const { return failed < 0 ? "" : "_failed" + std::to_string(failed + 1); }

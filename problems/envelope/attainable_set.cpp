@@ -5,6 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "tenon/problems/envelope/rank_one_sum.hpp"
+#include "tenon/problems/envelope/row_factor.hpp"
+
 namespace tenon {
 
 namespace {
@@ -21,74 +24,6 @@ constexpr double kLostTolerance = 1e-9;
 constexpr double kGiveUp = 1e3;          // times the least error
 constexpr double kToBoundary = 0.995;
 
-/// H = alpha I + sum_j beta_j s_j s_j', and its inverse without cancellation, however far apart the terms are:
-///     det H = alpha^2 + alpha sum_j beta_j |s_j|^2 + sum_{j<k} beta_j beta_k (s_j x s_k)^2,    adj H = alpha I + sum_j beta_j s_j^ s_j^'
-class RankOneSum {
- public:
-  void add_identity(double alpha) {
-    determinant_ += alpha * (alpha + 2 * alpha_ + squares_);
-    alpha_ += alpha;
-    adjugate_.diagonal().array() += alpha;
-  }
-  void add(double beta, const Eigen::Vector2d& s) {
-    const Eigen::Vector2d across(-s[1], s[0]);
-    determinant_ += beta * across.dot(outer_ * across) + alpha_ * beta * s.squaredNorm();
-    outer_ += beta * s * s.transpose();
-    squares_ += beta * s.squaredNorm();
-    adjugate_ += beta * across * across.transpose();
-  }
-  /// L with L L' = H^-1, lower triangular.
-  Eigen::Matrix2d inverse_root() const {
-    const double first = std::sqrt(adjugate_(0, 0) / determinant_);
-    return Eigen::Matrix2d{{first, 0}, {adjugate_(1, 0) / (determinant_ * first), 1 / std::sqrt(adjugate_(0, 0))}};
-  }
-
- private:
-  double alpha_ = 0, squares_ = 0, determinant_ = 0;  // squares: sum_j beta_j |s_j|^2
-  Eigen::Matrix2d outer_ = Eigen::Matrix2d::Zero(), adjugate_ = Eigen::Matrix2d::Zero();
-};
-
-/// R with R'R = sum of a a' over the rows a that were added, by Householder's reflections of the rows and not of their squares: kinked
-/// rotors and saturated ones make them differ by as much as the gap is small.
-class RowFactor {
- public:
-  void add(const Wrench& row) { rows_[count_++] = row; }
-
-  void factor() {
-    for (int k = 0; k < 6; ++k) {
-      double square = 0;
-      for (int r = k; r < count_; ++r) square += rows_[r][k] * rows_[r][k];
-      const double head = rows_[k][k], length = head > 0 ? -std::sqrt(square) : std::sqrt(square);
-      // v = a - length e_k,    a_j <- a_j - (v'a_j) v / (v'v/2),    v'v/2 = length (length - head)
-      const double half = length * (length - head);
-      rows_[k][k] = head - length;
-      Wrench product = Wrench::Zero();
-      for (int r = k; r < count_; ++r) product += rows_[r][k] * rows_[r];
-      product /= half;
-      product[k] = 0;
-      for (int r = k; r < count_; ++r) rows_[r] -= rows_[r][k] * product;
-      rows_[k][k] = length;
-    }
-  }
-
-  /// x of R'R x = b.
-  Wrench solve(Wrench b) const {
-    for (int k = 0; k < 6; ++k) {
-      b[k] /= rows_[k][k];
-      for (int j = k + 1; j < 6; ++j) b[j] -= rows_[k][j] * b[k];
-    }
-    for (int k = 5; k >= 0; --k) {
-      for (int j = k + 1; j < 6; ++j) b[k] -= rows_[k][j] * b[j];
-      b[k] /= rows_[k][k];
-    }
-    return b;
-  }
-
- private:
-  Wrench rows_[2 * kMaxRotors + 6];
-  int count_ = 0;
-};
-
 /// The largest step in [0, 1] along dy that leaves a limit a share 1 - kToBoundary of its value at y.
 double step_to(const RotorReach::Limit& limit, const Eigen::Vector2d& y, const Eigen::Vector2d& dy) {
   // kToBoundary g + s g'dy - s^2 c/2 |dy|^2 = 0, its positive root
@@ -96,6 +31,166 @@ double step_to(const RotorReach::Limit& limit, const Eigen::Vector2d& y, const E
   if (g + slope - bend >= 0) return 1;
   return 2 * g / (std::sqrt(slope * slope + 4 * bend * g) - slope);
 }
+
+/// The iterate of both programs and the step from it, numbered as in envelope.md.
+class Iteration {
+ public:
+  /// (2.1) along a direction, (2.2) without one.
+  Iteration(const std::vector<RotorReach>& rotors, const Wrench& from, const Wrench* direction)
+      : rotors_(rotors), is_ray_(direction != nullptr), from_(from), direction_(is_ray_ ? *direction : Wrench::Zero()) {
+    if (is_ray_) size_ = 0;
+    for (const RotorReach& rotor : rotors_) {
+      if (is_ray_) size_ += (rotor.columns().transpose() * direction_).norm() / direction_.squaredNorm();
+      num_limits_ += rotor.num_limits();
+    }
+    for (std::size_t i = 0; i < rotors_.size(); ++i) {
+      answer.y[i] = rotors_[i].centre();
+      for_limits(i, [&](int j, double g, const Vector2&) { z_[i][j] = size_ / static_cast<double>(rotors_.size()) / g; });
+    }
+    wrench_size_ = std::max(from.norm(), size_ * direction_.norm());
+  }
+
+  /// Everything at the iterate that the steps need. Returns the largest of gap, stationarity (3.1) and what the rows lack, relative.
+  double evaluate() {
+    factor_ = {};
+    lack_ = from_ + answer.length * direction_;
+    gap_ = 0;
+    double dual = 0;
+    for (std::size_t i = 0; i < rotors_.size(); ++i) {
+      const RotorReach& rotor = rotors_[i];
+      const Vector2& y = answer.y[i];
+      lack_ -= rotor.columns() * y + rotor.miss(y);
+      pull_[i] = rotor.columns().transpose() * answer.normal;
+      RankOneSum H;  // (3.2)
+      if (!is_ray_) {
+        const RotorReach::Effort effort = rotor.effort(y);
+        pull_[i] -= effort.gradient;
+        H.add_identity(effort.across);
+        H.add(effort.along - effort.across, effort.ahead);
+      }
+      if (!rotor.tilts()) H.add(1, {0, 1});
+      Vector2 stationarity = pull_[i];
+      for_limits(i, [&](int j, double g, const Vector2& slope) {
+        H.add_identity(z_[i][j] * rotor.limit(j).c);
+        H.add(z_[i][j] / g, slope);
+        gap_ += z_[i][j] * g;
+        stationarity += z_[i][j] * slope;
+      });
+      dual = std::max(dual, stationarity.lpNorm<Eigen::Infinity>());
+      root_[i] = H.inverse_root();
+      rows_[i] = rotor.columns() * root_[i];
+    }
+    return std::max({gap_ / size_, dual / size_, lack_.norm() / wrench_size_});
+  }
+
+  /// R of (3.2); a lost direction stands for itself, so that R is regular.
+  void factor(const Eigen::Matrix<double, 6, Dynamic>& lost) {
+    double largest = 0;
+    for (std::size_t i = 0; i < rotors_.size(); ++i) {
+      for (int k = 0; k < 2; ++k) factor_.add(rows_[i].col(k));
+      largest = std::max(largest, rows_[i].norm());
+    }
+    for (Eigen::Index k = 0; k < lost.cols(); ++k) factor_.add(largest * lost.col(k));
+    factor_.factor();
+    if (is_ray_) ray_ = factor_.solve(direction_);
+  }
+
+  /// (3.3) for z g = target, less the second-order terms of the step before where it corrects that. Returns how far it may be gone.
+  double find_step(double target, bool corrects) {
+    Vector2 push[kMaxRotors];
+    Wrench right = lack_;
+    for (std::size_t i = 0; i < rotors_.size(); ++i) {
+      push[i] = pull_[i];
+      for_limits(i, [&](int j, double g, const Vector2& slope) {
+        const double bend = 0.5 * rotors_[i].limit(j).c * dy_[i].squaredNorm();
+        const double product = corrects ? target - dz_[i][j] * slope.dot(dy_[i]) + z_[i][j] * bend : target;
+        push[i] += product / g * slope;
+        dz_[i][j] = product / g - z_[i][j];
+      });
+      push[i] = root_[i].transpose() * push[i];
+      right -= rows_[i] * push[i];
+    }
+    d_normal_.setZero();
+    d_length_ = 0;
+    turn(right, 1 - direction_.dot(answer.normal));
+    Wrench left = lack_ + d_length_ * direction_;
+    for (std::size_t i = 0; i < rotors_.size(); ++i) left -= rotors_[i].columns() * (root_[i] * (rows_[i].transpose() * d_normal_ + push[i]));
+    turn(left, 0);  // what rounding has left
+    double step = 1;
+    for (std::size_t i = 0; i < rotors_.size(); ++i) {
+      dy_[i] = root_[i] * (rows_[i].transpose() * d_normal_ + push[i]);
+      for_limits(i, [&](int j, double g, const Vector2& slope) {
+        dz_[i][j] -= z_[i][j] / g * slope.dot(dy_[i]);
+        step = std::min(step, step_to(rotors_[i].limit(j), answer.y[i], dy_[i]));
+        if (dz_[i][j] < 0) step = std::min(step, -kToBoundary * z_[i][j] / dz_[i][j]);
+      });
+    }
+    return step;
+  }
+
+  /// sum z g, now and after a part of the step.
+  double gap() const { return gap_; }
+  double gap_after(double step) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < rotors_.size(); ++i) {
+      for (int j = 0; j < rotors_[i].num_limits(); ++j) {
+        sum += (z_[i][j] + step * dz_[i][j]) * rotors_[i].limit(j).value(answer.y[i] + step * dy_[i]);
+      }
+    }
+    return sum;
+  }
+
+  void move(double step) {
+    for (std::size_t i = 0; i < rotors_.size(); ++i) {
+      answer.y[i] += step * dy_[i];
+      for (int j = 0; j < rotors_[i].num_limits(); ++j) z_[i][j] += step * dz_[i][j];
+    }
+    answer.normal += step * d_normal_;
+    answer.length += step * d_length_;
+  }
+
+  int num_limits() const { return num_limits_; }
+
+  AttainableSet::Answer answer;
+
+ private:
+  using Vector2 = Eigen::Vector2d;
+
+  /// f(j, g_ij, grad g_ij)
+  template <class F>
+  void for_limits(std::size_t i, F&& f) const {
+    for (int j = 0; j < rotors_[i].num_limits(); ++j) {
+      f(j, rotors_[i].limit(j).value(answer.y[i]), rotors_[i].limit(j).gradient(answer.y[i]));
+    }
+  }
+
+  /// Adds S^-1 (right + dt d) to the step of the normal, with dt such that d'(this) = along.
+  void turn(const Wrench& right, double along) {
+    Wrench d_normal = factor_.solve(right);
+    if (is_ray_) {
+      const double dt = (along - direction_.dot(d_normal)) / direction_.dot(ray_);
+      d_normal += dt * ray_;
+      d_length_ += dt;
+    }
+    d_normal_ += d_normal;
+  }
+
+  const std::vector<RotorReach>& rotors_;
+  bool is_ray_;
+  Wrench from_, direction_;
+  int num_limits_ = 0;
+  double size_ = 1, wrench_size_;          // of the objective, of the rows
+  double z_[kMaxRotors][kMaxLimits], dz_[kMaxRotors][kMaxLimits];
+  Vector2 dy_[kMaxRotors];
+  double gap_ = 0;
+  Wrench lack_;                             // of the rows
+  Vector2 pull_[kMaxRotors];                // K'lambda - grad phi
+  Eigen::Matrix2d root_[kMaxRotors];        // L
+  Matrix62 rows_[kMaxRotors];               // K L
+  RowFactor factor_;
+  Wrench ray_, d_normal_;                   // S^-1 d
+  double d_length_ = 0;
+};
 
 }  // namespace
 
@@ -143,142 +238,22 @@ AttainableSet::Answer AttainableSet::least_effort(const Wrench& wrench) const {
   return solve(wrench, nullptr);
 }
 
-/// The loop of both programs: with a direction (2.1), without one (2.2). Names and numbers as in envelope.md, section 3.
 AttainableSet::Answer AttainableSet::solve(const Wrench& from, const Wrench* direction) const {
-  const auto count = rotors_.size();
-  Answer at;
-  auto& y = at.y;
-  double z[kMaxRotors][kMaxLimits], dz[kMaxRotors][kMaxLimits] = {};
-  Eigen::Vector2d dy[kMaxRotors];
-
-  double size = 1;  // of the objective
-  if (direction != nullptr) {
-    size = 0;
-    for (const RotorReach& rotor : rotors_) size += (rotor.columns().transpose() * *direction).norm() / direction->squaredNorm();
-  }
-  int limits = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    y[i] = rotors_[i].centre();
-    for (int j = 0; j < rotors_[i].num_limits(); ++j, ++limits) z[i][j] = size / static_cast<double>(count) / rotors_[i].limit(j).value(y[i]);
-  }
-  const double force_size = std::max(from.norm(), direction != nullptr ? size * direction->norm() : 0);
-
+  Iteration at(rotors_, from, direction);
   Answer best;
   double least_error = std::numeric_limits<double>::infinity();
-  for (; at.iterations < kMaxIterations; ++at.iterations) {
-    // (3.2)  S = sum_i K_i H_i^-1 K_i',  and what the rows lack
-    RowFactor factor;
-    double largest = 0;
-    Wrench lack = from;
-    if (direction != nullptr) lack += at.length * *direction;
-    Matrix62 KL[kMaxRotors];  // H = (L L')^-1
-    Eigen::Matrix2d root[kMaxRotors];
-    Eigen::Vector2d pull[kMaxRotors];  // K'lambda less the gradient of the effort
-    double gap = 0, dual = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const RotorReach& rotor = rotors_[i];
-      const Matrix62& K = rotor.columns();
-      lack -= K * y[i] + rotor.miss(y[i]);
-      pull[i] = K.transpose() * at.normal;
-      RankOneSum H;
-      if (direction == nullptr) {
-        const RotorReach::Effort effort = rotor.effort(y[i]);
-        pull[i] -= effort.gradient;
-        H.add_identity(effort.across);
-        H.add(effort.along - effort.across, effort.ahead);
-      }
-      if (!rotor.tilts()) H.add(1, {0, 1});
-      Eigen::Vector2d stationarity = pull[i];
-      for (int j = 0; j < rotor.num_limits(); ++j) {
-        const RotorReach::Limit& limit = rotor.limit(j);
-        const double g = limit.value(y[i]);
-        const Eigen::Vector2d slope = limit.gradient(y[i]);
-        H.add_identity(z[i][j] * limit.c);
-        H.add(z[i][j] / g, slope);
-        gap += z[i][j] * g;
-        stationarity += z[i][j] * slope;
-      }
-      dual = std::max(dual, stationarity.lpNorm<Eigen::Infinity>());
-      root[i] = H.inverse_root();
-      KL[i] = K * root[i];
-      for (int k = 0; k < 2; ++k) factor.add(KL[i].col(k)), largest = std::max(largest, KL[i].col(k).norm());
-    }
-    const double error = std::max({gap / size, dual / size, lack.norm() / force_size});
+  for (; at.answer.iterations < kMaxIterations; ++at.answer.iterations) {
+    const double error = at.evaluate();
     if (!(error < kGiveUp * least_error)) break;  // rounding has the upper hand
     if (error < least_error) {
       least_error = error;
-      best = at;
+      best = at.answer;
     }
     if (error <= kError) break;
-    for (Eigen::Index k = 0; k < lost_.cols(); ++k) factor.add(largest * lost_.col(k));
-    factor.factor();
-    Wrench ray = Wrench::Zero();
-    if (direction != nullptr) ray = factor.solve(*direction);
-
-    // One solve for a wanted product z g = target - correction, step by step: (3.3)
-    Wrench turn;  // of the normal
-    double dt = 0;
-    const auto find_step = [&](double target, bool corrects) {
-      Wrench right = lack;
-      Eigen::Vector2d push[kMaxRotors];
-      for (std::size_t i = 0; i < count; ++i) {
-        push[i] = pull[i];
-        for (int j = 0; j < rotors_[i].num_limits(); ++j) {
-          const RotorReach::Limit& limit = rotors_[i].limit(j);
-          const double g = limit.value(y[i]);
-          double product = target;
-          if (corrects) {
-            const double bend = 0.5 * limit.c * dy[i].squaredNorm(), dg = limit.gradient(y[i]).dot(dy[i]);
-            product -= dz[i][j] * dg - z[i][j] * bend;
-          }
-          push[i] += product / g * limit.gradient(y[i]);
-          dz[i][j] = product / g - z[i][j];
-        }
-        right -= KL[i] * (root[i].transpose() * push[i]);
-      }
-      turn = factor.solve(right);
-      if (direction != nullptr) {
-        dt = (1 - direction->dot(at.normal + turn)) / direction->dot(ray);
-        turn += dt * ray;
-      }
-      Wrench left = lack + dt * (direction != nullptr ? *direction : Wrench::Zero());
-      for (std::size_t i = 0; i < count; ++i) {
-        dy[i] = root[i] * (KL[i].transpose() * turn + root[i].transpose() * push[i]);
-        left -= rotors_[i].columns() * dy[i];
-      }
-      Wrench extra = factor.solve(left);
-      if (direction != nullptr) {
-        const double ddt = -direction->dot(extra) / direction->dot(ray);
-        dt += ddt;
-        extra += ddt * ray;
-      }
-      turn += extra;
-      double step = 1;
-      for (std::size_t i = 0; i < count; ++i) {
-        dy[i] += root[i] * (KL[i].transpose() * extra);
-        for (int j = 0; j < rotors_[i].num_limits(); ++j) {
-          const RotorReach::Limit& limit = rotors_[i].limit(j);
-          dz[i][j] -= z[i][j] / limit.value(y[i]) * limit.gradient(y[i]).dot(dy[i]);
-          step = std::min(step, step_to(limit, y[i], dy[i]));
-          if (dz[i][j] < 0) step = std::min(step, -kToBoundary * z[i][j] / dz[i][j]);
-        }
-      }
-      return step;
-    };
-    const double mu = gap / limits;
-    const double trial = find_step(0, false);
-    double ahead = 0;  // the gap after the trial step
-    for (std::size_t i = 0; i < count; ++i) {
-      for (int j = 0; j < rotors_[i].num_limits(); ++j) ahead += (z[i][j] + trial * dz[i][j]) * rotors_[i].limit(j).value(y[i] + trial * dy[i]);
-    }
-    const double share = std::clamp(ahead / gap, 0.0, 1.0);
-    const double step = find_step(share * share * share * mu, true);
-    for (std::size_t i = 0; i < count; ++i) {
-      y[i] += step * dy[i];
-      for (int j = 0; j < rotors_[i].num_limits(); ++j) z[i][j] += step * dz[i][j];
-    }
-    at.normal += step * turn;
-    at.length += step * dt;
+    at.factor(lost_);
+    const double trial = at.find_step(0, false);
+    const double share = std::clamp(at.gap_after(trial) / at.gap(), 0.0, 1.0);
+    at.move(at.find_step(share * share * share * at.gap() / at.num_limits(), true));
   }
   best.solved = least_error <= kAcceptedError;
   return best;

@@ -38,11 +38,8 @@ class AttainableSet {
   double deviation() const;
 
   const std::vector<RotorReach>& rotors() const { return rotors_; }
-  int rank() const { return 6 - static_cast<int>(lost_.cols()); }
 
  private:
-  struct Iterate;
-
   bool is_lost(const Wrench& wrench) const;
   Answer solve(const Wrench& from, const Wrench* direction) const;
 
