@@ -35,9 +35,10 @@ CatalogueEntry first_horizon(const std::string& name, const std::string& descrip
 }
 
 std::vector<CatalogueEntry> horizons() {
+  const std::string kRounder = "rounding=5e-3";  // than in closed loop: differences, which `tenon check` takes, then follow the corner
   return {
-      first_horizon("cart-pole-soft-walls", "a pole between soft walls, N = 10 (n = 54, m = 40)", "cart-pole-soft-walls"),
-      first_horizon("cart-pole-soft-walls-5", "the same, N = 5 (n = 29, m = 20)", "cart-pole-soft-walls", {"intervals=5"}),
+      first_horizon("cart-pole-soft-walls", "a pole between soft walls, N = 10 (n = 54, m = 40)", "cart-pole-soft-walls", {kRounder}),
+      first_horizon("cart-pole-soft-walls-5", "the same, N = 5 (n = 29, m = 20)", "cart-pole-soft-walls", {kRounder, "intervals=5"}),
       first_horizon("delta-touch-down", "a wrist onto a plane, N = 25 (n = 128, m = 175)", "delta-touch-down"),
       first_horizon("delta-touch-down-10", "the same, N = 10 (n = 53, m = 70)", "delta-touch-down", {"intervals=10"}),
   };
