@@ -43,13 +43,16 @@ struct BasicBounds {
   BasicBounds() : BasicBounds(N == Dynamic ? 0 : N, M == Dynamic ? 0 : M) {}
 
   /// No bound at all, hard rows without limits.
-  BasicBounds(int n, int m) {
-    x_lower.setConstant(n, -kInfinity<Scalar>);
-    x_upper.setConstant(n, kInfinity<Scalar>);
-    c_lower.setConstant(m, -kInfinity<Scalar>);
-    c_upper.setConstant(m, kInfinity<Scalar>);
-    compliance.setZero(m);
-    preload.setZero(m);
+  BasicBounds(int n, int m) : x_lower(n), x_upper(n), c_lower(m), c_upper(m), compliance(m), preload(m) { remove_limits(); }
+
+  /// As a problem expects to be given them.
+  void remove_limits() {
+    x_lower.setConstant(-kInfinity<Scalar>);
+    x_upper.setConstant(kInfinity<Scalar>);
+    c_lower.setConstant(-kInfinity<Scalar>);
+    c_upper.setConstant(kInfinity<Scalar>);
+    compliance.setZero();
+    preload.setZero();
   }
 };
 

@@ -88,14 +88,14 @@ struct Demand {
 
 Demand demand_on(const std::string& solver) {
   // Dense or first-order methods: hundreds of variables tied by dynamics take them minutes.
-  static const std::set<std::string> kDynamics = {"cart-pole", "lq", "pendulum"};
+  static const std::set<std::string> kDynamics = {"cart-pole", "lq", "peg-in-hole", "pendulum"};
   static const std::map<std::string, Demand> weaker = {
       {"nlopt-slsqp", {.beyond = kDynamics}},
       // First-order methods without curvature: they creep, so their own verdict is not asked for, only a near objective.
       {"nlopt-mma", {.objective_error = 1e-4, .success = false, .beyond = {"hs106" /* its rows differ by 1e6 in scale */}}},
       {"nlopt-ccsaq", {.objective_error = 1e-4, .success = false, .beyond = {"hs106" /* its rows differ by 1e6 in scale */}}},
       // One penalty for all rows: it falls into the origin of hs093, where the product of degree six is flat, and cannot scale hs106.
-      {"nlopt-auglag", {.objective_error = 1e-4, .success = false, .beyond = {"hs093", "hs106", "cart-pole", "lq", "pendulum"}}},
+      {"nlopt-auglag", {.objective_error = 1e-4, .success = false, .beyond = {"hs093", "hs106", "cart-pole", "lq", "peg-in-hole", "pendulum"}}},
   };
   const auto found = weaker.find(solver);
   return found == weaker.end() ? Demand{} : found->second;

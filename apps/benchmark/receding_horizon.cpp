@@ -1,4 +1,4 @@
-// soft_walls/step, touch_down/step: whole ticks of a receding horizon (estimate, shift, solve, accept) in closed loop; Ipopt as a peer.
+// soft_walls/step, touch_down/step, peg_in_hole/step: whole ticks of a receding horizon (estimate, shift, solve, accept) in closed loop; Ipopt as a peer.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -51,6 +51,7 @@ void add(const std::string& row, const std::string& task, std::vector<Benchmark>
 void add_receding_horizon(std::vector<Benchmark>& rows) {
   add("soft_walls/step", "cart-pole-soft-walls", rows);
   add("touch_down/step", "delta-touch-down", rows);
+  add("peg_in_hole/step", "peg-in-hole", rows);
 }
 
 }  // namespace tenon

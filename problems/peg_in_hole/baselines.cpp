@@ -16,7 +16,9 @@ constexpr double kHook = 2.25;                   // mm: how far the tilted peg s
 constexpr double kTurn = 0.6;                    // rad/s
 constexpr double kAside = 15, kLower = 15, kInsert = 30;  // mm/s
 constexpr double kTouch = 1;                     // N
-constexpr double kAdmittance = 20;               // mm/s for each N, of x; of phi in the ratio of the springs, so that both give way as fast
+// mm/s for each N, of x; of phi in the ratio of the springs, so that both give way as fast. Times the damping of the inner loop it must stay well
+// below 1: a rate is felt as a force at once.
+constexpr double kAdmittance = 8;
 
 /// Towards a goal, no faster than this, and not beyond it within the period.
 double towards(double from, double to, double speed, double period) {
@@ -72,7 +74,7 @@ Vector3d TiltAndSlide::rate(double, const Vector3d& reference, const Vector3d& f
     case Phase::upright: {
       // about the left corner: q = corner + R(theta) (w/2, 0)
       const double turn = towards(theta, 0, kTurn, period()), half = geometry_.width / 2;
-      return {-half * std::sin(theta) * turn + 0.2 * give_x, half * std::cos(theta) * turn, lever * turn};
+      return {-half * std::sin(theta) * turn + give_x, half * std::cos(theta) * turn, lever * turn};
     }
     case Phase::insert: return {give_x, towards(reference[1], -depth_, kInsert, period()), give_phi};
   }

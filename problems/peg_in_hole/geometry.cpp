@@ -7,6 +7,8 @@ namespace tenon::peg {
 
 namespace {
 
+constexpr double kFar = 1e9;  // mm
+
 struct Turn {
   explicit Turn(double theta) : c(std::cos(theta)), s(std::sin(theta)) {}
   Vector2d out(const Vector2d& v) const { return {c * v[0] - s * v[1], s * v[0] + c * v[1]}; }
@@ -69,51 +71,72 @@ Jet smax(const Jet& a, const Jet& b, double delta, const Vector3d& y) {
   return out;
 }
 
-/// Calls join(jets...) with the faces of a contact's convex pair.
-template <class Join>
-auto with_faces(const Geometry& g, int contact, const Vector3d& pose, const Vector3d& hole, const Vector3d& y, Join&& join) {
-  const double s = side_of(contact), half = g.half_opening();
-  if (contact < 2) {
-    const double corner = s * g.width / 2;
-    constexpr double kDiagonal = 1 / std::numbers::sqrt2;
-    return join(corner_face(g, pose, hole, corner, {-s, 0}, half, y),
-                corner_face(g, pose, hole, corner, {-s * kDiagonal, kDiagonal}, (half + g.chamfer) * kDiagonal, y),
-                corner_face(g, pose, hole, corner, {0, 1}, 0, y));
-  }
-  const Vector2d vertex = contact < 4 ? Vector2d(s * half, -g.chamfer) : Vector2d(s * (half + g.chamfer), 0);
-  return join(vertex_face(g, pose, hole, vertex, {s, 0}, -g.width / 2, y), vertex_face(g, pose, hole, vertex, {0, -1}, 0, y));
+/// A face as a distance n . p + offset of a point p, in the axes of the body that has the face.
+struct Face {
+  Vector2d n{0, 0};
+  double offset = 0;
+};
+/// A contact's convex pair: a point of one body, in its axes, and the faces of the other.
+struct Pair {
+  Vector2d point;
+  std::array<Face, 3> face;
+  int faces;
+};
+constexpr bool is_corner(int contact) {
+  return contact < 2;
 }
 
-Vector2d contact_point(const Geometry& g, int contact, const Vector3d& pose, const Vector3d& hole) {
+Pair pair_of(const Geometry& g, int contact) {
   const double s = side_of(contact), half = g.half_opening();
-  if (contact < 2) return pose.head<2>() + Turn(pose[2] / g.lever).out({s * g.width / 2, 0});
-  return hole.head<2>() + Turn(hole[2] / g.lever).out(contact < 4 ? Vector2d(s * half, -g.chamfer) : Vector2d(s * (half + g.chamfer), 0));
+  constexpr double kDiagonal = 1 / std::numbers::sqrt2;
+  if (is_corner(contact)) {
+    return {{s * g.width / 2, 0},
+            {Face{{-s, 0}, half}, Face{{-s * kDiagonal, kDiagonal}, (half + g.chamfer) * kDiagonal}, Face{{0, 1}, 0}},
+            3};
+  }
+  const Vector2d vertex = contact < 4 ? Vector2d(s * half, -g.chamfer) : Vector2d(s * (half + g.chamfer), 0);
+  return {vertex, {Face{{s, 0}, -g.width / 2}, Face{{0, -1}, 0}}, 2};
 }
 
 }  // namespace
 
 Jet smooth_gap(const Geometry& g, double delta, int contact, const Vector3d& pose, const Vector3d& hole, const Vector3d& y) {
-  const auto join = [&](const auto& first, const auto& second, const auto&... third) {
-    Jet jet = smax(first, second, delta, y);
-    ((jet = smax(jet, third, delta, y)), ...);
-    return jet;
+  const Pair pair = pair_of(g, contact);
+  const auto jet_of = [&](const Face& face) {
+    return is_corner(contact) ? corner_face(g, pose, hole, pair.point[0], face.n, face.offset, y)
+                              : vertex_face(g, pose, hole, pair.point, face.n, face.offset, y);
   };
-  return with_faces(g, contact, pose, hole, y, join);
+  Jet jet = jet_of(pair.face[0]);
+  for (int k = 1; k < pair.faces; ++k) jet = smax(jet, jet_of(pair.face[static_cast<std::size_t>(k)]), delta, y);
+  return jet;
 }
 
 Jet smooth_gap(const Geometry& g, double delta, int contact, const Vector3d& pose, const Vector3d& hole) {
   return smooth_gap(g, delta, contact, pose, hole, Vector3d::Zero());
 }
 
-ExactGap exact_gap(const Geometry& g, int contact, const Vector3d& pose, const Vector3d& hole) {
-  const auto join = [](const auto& first, const auto&... rest) {
-    const Jet* largest = &first;
-    ((largest = rest.value > largest->value ? &rest : largest), ...);
-    return *largest;
-  };
-  const Jet face = with_faces(g, contact, pose, hole, Vector3d::Zero(), join);
-  const Vector2d along(-face.gradient[1], face.gradient[0]), arm = contact_point(g, contact, pose, hole) - pose.head<2>();
-  return {face.value, face.gradient, {along[0], along[1], (arm[0] * along[1] - arm[1] * along[0]) / g.lever}};
+std::array<ExactGap, kContacts> exact_gaps(const Geometry& g, const Vector3d& pose, const Vector3d& hole) {
+  const Turn of_peg(pose[2] / g.lever), of_hole(hole[2] / g.lever);
+  const auto cross = [](const Vector2d& a, const Vector2d& b) { return a[0] * b[1] - a[1] * b[0]; };
+  std::array<ExactGap, kContacts> gaps;
+  for (int i = 0; i < kContacts; ++i) {
+    const Pair pair = pair_of(g, i);
+    const bool corner = is_corner(i);
+    const Vector2d arm = corner ? of_peg.out(pair.point) : Vector2d(hole.head<2>() + of_hole.out(pair.point) - pose.head<2>());
+    const Vector2d seen = corner ? of_hole.in(pose.head<2>() + arm - hole.head<2>()) : of_peg.in(arm);  // from the body with the faces
+    double largest = -kFar;
+    Vector2d n(0, 0);
+    for (int k = 0; k < pair.faces; ++k) {
+      const Face& face = pair.face[static_cast<std::size_t>(k)];
+      const double value = face.n.dot(seen) + face.offset;
+      if (value > largest) largest = value, n = face.n;
+    }
+    const Vector2d normal = corner ? of_hole.out(n) : Vector2d(-of_peg.out(n)), tangent(-normal[1], normal[0]);
+    gaps[static_cast<std::size_t>(i)] = {largest,
+                                         {normal[0], normal[1], cross(arm, normal) / g.lever},
+                                         {tangent[0], tangent[1], cross(arm, tangent) / g.lever}};
+  }
+  return gaps;
 }
 
 double depth(const Geometry& g, const Vector3d& pose, const Vector3d& hole) {

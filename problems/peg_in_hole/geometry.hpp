@@ -53,7 +53,7 @@ struct ExactGap {
   Vector3d normal;   // gradient of the gap
   Vector3d tangent;  // the same for the direction that is a right angle to the left of the normal
 };
-ExactGap exact_gap(const Geometry& geometry, int contact, const Vector3d& pose, const Vector3d& hole);
+std::array<ExactGap, kContacts> exact_gaps(const Geometry& geometry, const Vector3d& pose, const Vector3d& hole);
 
 /// mm: how far the middle of the peg's bottom is below the mouth, along the hole.
 double depth(const Geometry& geometry, const Vector3d& pose, const Vector3d& hole);

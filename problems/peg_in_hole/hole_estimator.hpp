@@ -1,8 +1,9 @@
 // Where the hole is, from where the peg could be and what pushed it there: Bayes' rule on a grid over (x, z, theta) of its mouth.
 //
-//     log w  +=  -e / (2 sigma^2),     e = min(0, smallest gap)^2 + [a side pushes] 0.3 min(1/2 mm, max(0, smallest gap of that side))^2
+//     log w  +=  -e / (2 sigma^2),     e = min(0, smallest gap)^2 + [a side pushes] 0.3 min(1/2 mm, max(0, smallest gap of that side))^2 + ...
 //
-// The peg cannot be inside a block, and what pushes is near. Old evidence fades, the prior does not. Equations: peg_in_hole.md, section 4.
+// The peg cannot be inside a block, what pushes is near, and it pushes at right angles to its face but for friction. Old evidence fades, the
+// prior does not. Equations: peg_in_hole.md, section 4.
 #pragma once
 
 #include <vector>
@@ -34,15 +35,15 @@ class HoleEstimator final : public Estimator {
   std::string estimate_name(int i) const override;
 
  private:
-  /// Adds to the evidence against every cell: penetration, and distance of the side that pushes (-1, +1, 0: nobody).
-  void weigh(const Vector3d& pose, int side, double gain);
+  /// Adds to the evidence against every cell: penetration; distance of the side that pushes, and a direction that its face cannot push in.
+  void weigh(const Vector3d& pose, const Vector3d& force, double gain);
   void summarise();
 
   HoleEstimatorOptions options_;
   Eigen::ArrayXf x_, z_, phi_;           // mm, the middle of the cells
   Eigen::ArrayXXf evidence_;             // against a cell; columns: x, all z of the first phi, all z of the next ...
   Eigen::ArrayXXf prior_;
-  Eigen::ArrayXf left_, right_, weight_; // of one column
+  Eigen::ArrayXf left_, right_, direction_, weight_;  // of one column
   Vector3d mean_;
   Matrix3d covariance_;
   double last_ = 0;

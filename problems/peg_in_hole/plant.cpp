@@ -90,9 +90,9 @@ void PegPlant::step(const Vector3d& damping) {
     drive_ = spring + damping.cwiseProduct(reference_rate_ - seen_rate_);
   }
   contact_force_.setZero();
-  for (int i = 0; i < kContacts; ++i) {
-    const ExactGap gap = exact_gap(world_.geometry, i, pose_, hole_);
-    const auto at = static_cast<std::size_t>(i);
+  const std::array<ExactGap, kContacts> gaps = exact_gaps(world_.geometry, pose_, hole_);
+  for (std::size_t at = 0; at < gaps.size(); ++at) {
+    const ExactGap& gap = gaps[at];
     gap_[at] = gap.value;
     pressure_[at] = 0;
     if (gap.value >= 0) continue;

@@ -72,6 +72,7 @@ class BarrierProblem {
 
   /// Takes the problem's bounds of this moment; moves fixed variables and slacks to their values.
   void take_bounds(Iterate<P>& at) {
+    bounds_.remove_limits();
     problem_.bounds(bounds_);
     x_box_.set(bounds_.x_lower, bounds_.x_upper, at.x);
     s_box_.set(bounds_.c_lower, bounds_.c_upper, at.s);

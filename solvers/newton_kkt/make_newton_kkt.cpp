@@ -42,6 +42,7 @@ class NlpNewtonKkt final : public Solver {
 
   Result solve(Point& point) override {
     validate(problem_, point);
+    bounds_.remove_limits();
     problem_.bounds(bounds_);
     validate(problem_, bounds_);
     choose_scale(point);
