@@ -1,17 +1,18 @@
 #include "tenon/core/solver.hpp"
 
-#include <cmath>
 #include <stdexcept>
 
 namespace tenon {
 
 namespace {
 
-void validate_interval(const std::string& name, double lower, double upper) {
-  if (std::isnan(lower) || std::isnan(upper) || lower > upper || lower == kInfinity<double> || upper == -kInfinity<double>) {
-    throw std::invalid_argument("bounds of " + name + " are [" + std::to_string(lower) + ", " + std::to_string(upper) +
-                                "] (expected lower <= upper, not NaN)");
-  }
+bool is_interval(double lower, double upper) {
+  return lower <= upper && lower != kInfinity<double> && upper != -kInfinity<double>;
+}
+
+[[noreturn]] void reject_interval(const std::string& name, double lower, double upper) {
+  throw std::invalid_argument("bounds of " + name + " are [" + std::to_string(lower) + ", " + std::to_string(upper) +
+                              "] (expected lower <= upper, not NaN)");
 }
 
 void validate_length(const std::string& name, Eigen::Index found, Eigen::Index expected) {
@@ -23,9 +24,11 @@ void validate_length(const std::string& name, Eigen::Index found, Eigen::Index e
 }  // namespace
 
 void validate(const Nlp& problem, const Bounds& bounds) {
-  for (int i = 0; i < problem.num_variables(); ++i) validate_interval(problem.variable_name(i), bounds.x_lower[i], bounds.x_upper[i]);
+  for (int i = 0; i < problem.num_variables(); ++i) {
+    if (!is_interval(bounds.x_lower[i], bounds.x_upper[i])) reject_interval(problem.variable_name(i), bounds.x_lower[i], bounds.x_upper[i]);
+  }
   for (int j = 0; j < problem.num_constraints(); ++j) {
-    validate_interval(problem.constraint_name(j), bounds.c_lower[j], bounds.c_upper[j]);
+    if (!is_interval(bounds.c_lower[j], bounds.c_upper[j])) reject_interval(problem.constraint_name(j), bounds.c_lower[j], bounds.c_upper[j]);
     if (!(bounds.compliance[j] >= 0)) {
       throw std::invalid_argument("compliance of " + problem.constraint_name(j) + " is " + std::to_string(bounds.compliance[j]) +
                                   " (expected 0 or more)");

@@ -62,7 +62,7 @@ endfunction()
 function(tenon_install_package)
   include(CMakePackageConfigHelpers)
   set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tenon)
-  install(DIRECTORY core problems solvers DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tenon FILES_MATCHING PATTERN "*.hpp")
+  install(DIRECTORY core mpc problems solvers DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tenon FILES_MATCHING PATTERN "*.hpp")
   install(DIRECTORY problems/ DESTINATION ${CMAKE_INSTALL_DATADIR}/tenon FILES_MATCHING PATTERN "*.toml" PATTERN "*.csv")
   install(EXPORT tenonTargets NAMESPACE tenon:: DESTINATION ${package_dir})
   configure_package_config_file(${PROJECT_SOURCE_DIR}/core/cmake/tenonConfig.cmake.in

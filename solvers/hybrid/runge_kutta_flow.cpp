@@ -59,6 +59,7 @@ class RungeKuttaFlow final : public Flow {
       if (error <= 1) {
         end_ = is_last ? t_limit : begin_ + h;
         f_ = stages_.col(kStages);
+        if (dae_.has_manifold(at_.mode) && !(project(end_, x_next_) && evaluate(end_, x_next_, f_, at_.y))) return Step::failed;
         y_ = at_.y;
         const double factor = std::clamp(kSafety * std::pow(std::max(error, 1e-12), -kExponent), kLeastFactor, kMostFactor);
         if (h >= 0.5 * h_ || factor < 1) h_ = h * factor;
@@ -74,7 +75,7 @@ class RungeKuttaFlow final : public Flow {
 
   bool interpolate(double t, DaeState& state) override {
     if (!interpolate_state(t, state)) return false;
-    if (t != end_) return evaluate(t, state.x, state.xdot, state.y);
+    if (t != end_) return project(t, state.x) && evaluate(t, state.x, state.xdot, state.y);
     state.xdot = f_;
     state.y = y_;
     return true;
@@ -122,6 +123,8 @@ class RungeKuttaFlow final : public Flow {
     y = at_.y;
     return true;
   }
+
+  bool project(double t, VectorRef x) { return !dae_.has_manifold(at_.mode) || dae_.project(at_.mode, t, x, workspace_); }
 
   /// The derivative of a stage into its column.
   bool evaluate_stage(int i, double t, ConstVectorRef x) { return evaluate(t, x, stages_.col(i), at_.y); }

@@ -1,0 +1,158 @@
+#include "tenon/mpc/receding_horizon.hpp"
+
+#include <chrono>
+#include <stdexcept>
+
+#include "tenon/mpc/shift_plan.hpp"
+
+namespace tenon {
+
+namespace {
+
+constexpr double kRounding = 1e-9;  // of times, in intervals
+
+constexpr const char* kLogNames[] = {"iterations", "violation", "fallback"};
+constexpr int kLogSize = 3;
+
+void check(const std::string& what, int found, int expected) {
+  if (found == expected) return;
+  throw std::invalid_argument(what + " are " + std::to_string(found) + " (expected " + std::to_string(expected) + ", as of the program)");
+}
+
+}  // namespace
+
+RecedingHorizon::RecedingHorizon(std::unique_ptr<HorizonProgram> program, std::unique_ptr<Estimator> estimator,
+                                 const SolverFactory& make_solver, const HorizonOptions& options, double period)
+    : program_(std::move(program)),
+      estimator_(std::move(estimator)),
+      stages_(program_->stages()),
+      cold_(make_solver(*program_, options.cold)),
+      warm_(make_solver(*program_, options.warm)),
+      largest_violation_(options.largest_violation),
+      period_(period),
+      plan_(program_->num_variables(), program_->num_constraints()),
+      trial_(plan_),
+      estimates_(Vector::Zero(program_->num_estimates())),
+      commands_(Vector::Zero(program_->num_commands())),
+      covariance_(Eigen::MatrixXd::Zero(estimates_.size(), estimates_.size())) {
+  if (!(period_ > 0) || period_ > (1 + kRounding) * program_->interval()) {
+    throw std::invalid_argument("the period of a receding horizon is " + std::to_string(period_) + " s (expected more than 0, at most a stage, " +
+                                std::to_string(program_->interval()) + " s)");
+  }
+  check("estimates", estimator_ ? estimator_->num_estimates() : 0, program_->num_estimates());
+  if (estimator_) check("the estimator's measurements", estimator_->num_measurements(), program_->num_measurements());
+  reset();
+}
+
+RecedingHorizon::~RecedingHorizon() = default;
+
+void RecedingHorizon::reset() {
+  if (estimator_) {
+    estimator_->reset();
+    estimator_->mean(estimates_);
+    estimator_->covariance(covariance_);
+  }
+  commands_.setZero();
+  start_ = 0;
+  has_plan_ = failed_ = false;
+  log_ = {};
+}
+
+void RecedingHorizon::update(double t, ConstVectorRef measurements, VectorRef commands) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin = Clock::now();
+  estimate(t, measurements);
+  program_->observe(t, measurements, estimates_);
+  shift_to(t);
+  accept(t, solve_from_guess());
+  program_->commands(plan_, t - start_, commands_);
+  commands = commands_;
+  log_.elapsed = std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+void RecedingHorizon::estimate(double t, ConstVectorRef measurements) {
+  if (!estimator_) return;
+  estimator_->update(t, measurements, commands_);
+  estimator_->mean(estimates_);
+  estimator_->covariance(covariance_);
+}
+
+/// Until the plan's first stage is the one that holds t.
+void RecedingHorizon::shift_to(double t) {
+  const double interval = program_->interval();
+  while (has_plan_ && t - start_ > (1 - kRounding) * interval) {
+    shift_plan(stages_, plan_);
+    start_ += interval;
+  }
+}
+
+void RecedingHorizon::start_afresh(Point& plan) const {
+  program_->initial_point(plan.x);
+  plan.lambda.setZero();
+  plan.z.setZero();
+}
+
+Result RecedingHorizon::solve_from_guess() {
+  const bool cold = !has_plan_ || failed_;
+  if (cold)
+    start_afresh(trial_);
+  else
+    trial_ = plan_;
+  try {
+    return (cold ? cold_ : warm_)->solve(trial_);
+  } catch (const std::invalid_argument&) {  // bounds that cross: what was observed makes no sense
+    Result result;
+    result.status = Status::invalid_start;
+    result.residual.primal = kInfinity<double>;
+    return result;
+  }
+}
+
+void RecedingHorizon::accept(double t, const Result& result) {
+  log_ = {result.status, result.iterations, result.residual.primal, PlanSource::solved, 0};
+  failed_ = !(result.residual.primal <= largest_violation_ && trial_.x.allFinite());
+  if (!failed_) {
+    std::swap(plan_, trial_);
+    if (!succeeded(result.status)) log_.source = PlanSource::iterate;
+  } else if (has_plan_) {
+    log_.source = PlanSource::shifted;
+    return;
+  } else {
+    start_afresh(plan_);
+    log_.source = PlanSource::initial;
+  }
+  start_ = t;
+  has_plan_ = true;
+}
+
+int RecedingHorizon::num_outputs() const {
+  const int estimates = static_cast<int>(estimates_.size());
+  return estimates + estimates * (estimates + 1) / 2 + kLogSize + program_->num_plan_outputs();
+}
+
+std::string RecedingHorizon::output_name(int i) const {
+  const int estimates = static_cast<int>(estimates_.size());
+  if (i < estimates) return estimator_->estimate_name(i);
+  i -= estimates;
+  for (int column = 0; column < estimates; ++column) {
+    for (int row = column; row < estimates; ++row) {
+      if (i-- == 0) return "cov_" + estimator_->estimate_name(column) + "_" + estimator_->estimate_name(row);
+    }
+  }
+  return i < kLogSize ? kLogNames[i] : program_->plan_output_name(i - kLogSize);
+}
+
+void RecedingHorizon::outputs(VectorRef values) const {
+  const Eigen::Index estimates = estimates_.size();
+  values.head(estimates) = estimates_;
+  Eigen::Index next = estimates;
+  for (Eigen::Index column = 0; column < estimates; ++column) {
+    for (Eigen::Index row = column; row < estimates; ++row) values[next++] = covariance_(row, column);
+  }
+  values[next++] = log_.iterations;
+  values[next++] = log_.violation;
+  values[next++] = log_.fell_back() ? 1 : 0;
+  program_->plan_outputs(plan_, values.tail(values.size() - next));
+}
+
+}  // namespace tenon

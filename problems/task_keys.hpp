@@ -1,0 +1,17 @@
+// What the readers of task files share: keys with the range that makes sense.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tenon/problems/toml/document.hpp"
+
+namespace tenon {
+
+/// All throw InputError with the place of what is wrong.
+toml_file::Table required_table(const toml_file::Table& root, const std::string& key, const std::vector<std::string>& known_keys);
+double positive(const toml_file::Table& table, const std::string& key, double fallback);
+double not_negative(const toml_file::Table& table, const std::string& key, double fallback);
+int positive_integer(const toml_file::Table& table, const std::string& key, int fallback);
+
+}  // namespace tenon

@@ -1,0 +1,64 @@
+#include "tenon/problems/tasks.hpp"
+
+#include <filesystem>
+
+#include "tenon/core/named_file.hpp"
+#include "tenon/core/nearest_name.hpp"
+#include "tenon/problems/soft_walls/task.hpp"
+
+namespace tenon {
+
+std::vector<EmbeddedFile> embedded_tasks();  // generated from */scenes/*.toml
+
+namespace {
+
+struct TaskKind {
+  const char* name;
+  ControlTask (*make)(const toml_file::Document& document);
+};
+
+constexpr TaskKind kKinds[] = {
+    {"soft-walls", &soft_walls::make_task},
+};
+
+const TaskKind& kind_of(const toml_file::Document& document) {
+  const toml_file::Table root = document.root({});
+  const std::string wanted = root.text("task");
+  std::vector<std::string> names;
+  std::string list;
+  for (const TaskKind& kind : kKinds) {
+    if (kind.name == wanted) return kind;
+    names.emplace_back(kind.name);
+    list += (list.empty() ? "" : ", ") + names.back();
+  }
+  throw InputError(root.position("task"), "unknown task '" + wanted + "', the nearest is '" + nearest_name(wanted, names) + "'", "one of " + list);
+}
+
+/// `stiffness=2` is a parameter; with a dot it is a path in the file.
+std::vector<std::string> as_paths(std::vector<std::string> overrides) {
+  for (std::string& text : overrides) {
+    const std::string key = text.substr(0, text.find('='));
+    if (!key.empty() && key.find('.') == std::string::npos) text = "parameters." + text;
+  }
+  return overrides;
+}
+
+}  // namespace
+
+std::vector<std::string> builtin_tasks() {
+  return names_of(embedded_tasks());
+}
+
+std::string describe_builtin_task(const std::string& name) {
+  return description_of(name, embedded_tasks());
+}
+
+ControlTask make_task(const std::string& name_or_path, const std::vector<std::string>& overrides) {
+  const NamedFile file = open_named_file("task", name_or_path, embedded_tasks());
+  const toml_file::Document document(file.text, file.name, as_paths(overrides));
+  ControlTask task = kind_of(document).make(document);
+  task.name = task.scenery.title = std::filesystem::path(name_or_path).stem().string();
+  return task;
+}
+
+}  // namespace tenon
