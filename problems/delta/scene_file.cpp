@@ -161,7 +161,7 @@ void read_controller(const Table& root, Scene& scene) {
   law.damping = section.flag("damping", law.coriolis);
   law.stiffness = section.vector3("stiffness", law.stiffness);
   law.impedance_damping = section.vector3("impedance_damping", law.impedance_damping);
-  law.tool_pole = section.number("tool_pole", law.tool_pole);
+  law.tool_pole = section.positive("tool_pole", law.tool_pole);
   law.tool_stiffness = section.vector3("tool_stiffness", law.tool_stiffness);
   law.tool_damping = section.vector3("tool_damping", law.tool_damping);
   options.period = 1 / section.positive("rate", 1 / options.period);

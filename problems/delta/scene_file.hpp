@@ -4,9 +4,9 @@
 //     [start]       position, velocity of the wrist (m, m/s); without it the run starts on the reference, moving as that does
 //     [reference]   kind = "hold" | "circle" | "knots", centre, radius, frequency; [[reference.knot]] t, position
 //     [controller]  mode = "none" | "continuous" | "sampled", form = "linearising" | "impedance", pole or kp, kd, ki; feed_forward,
-//     coriolis,
-//                   damping (as coriolis, unless said), inertia = "exact" | "projected-left", stiffness, impedance_damping, integral_limit,
-//                   rate (Hz), delay (ticks), encoder_bits, filter (Hz), payload, tactile_gain, tactile_limit, tactile_axis
+//                   coriolis, damping (as coriolis, unless said), inertia = "exact" | "projected-left", stiffness, impedance_damping,
+//                   integral_limit, rate (Hz), delay (ticks), encoder_bits, filter (Hz), payload, tactile_gain, tactile_limit,
+//                   tactile_axis; of the gimbals tool_pole, or tool_stiffness and tool_damping under impedance
 //     [[contact]]   name, normal, offset, stiffness, damping, finger, sensor = "left" | "right"
 //     [gripper]     from, to, begin, end          [object] mass, position, stiffness, damping          [tool] angle, reference
 //     [push]        constant, amplitude, from, to, duration, on = "wrist" | "object"

@@ -103,9 +103,9 @@ bool HybridIntegrator::is_where_we_left(const DaeState& state) const {
 /// Consistent, and no level asks for another mode.
 bool HybridIntegrator::settle(DaeState& state, std::span<const int> fired, bool is_consistent) {
   for (int k = 0; k < options_.max_events_at_once; ++k, is_consistent = false) {
-    if (!is_consistent && dae_.has_manifold(state.mode) && !dae_.project(state.mode, state.t, state.x, workspace_))
+    if (dae_.has_manifold(state.mode) && !dae_.project(state.mode, state.t, state.x, workspace_))
       return fail(IntegrationStatus::no_consistent_state, state, "the position constraints cannot be closed");
-    if (!is_consistent && !make_consistent(dae_, newton_, state, workspace_))
+    if ((!is_consistent || dae_.has_manifold(state.mode)) && !make_consistent(dae_, newton_, state, workspace_))
       return fail(IntegrationStatus::no_consistent_state, state, why_inconsistent(state));
     const Transition transition = dae_.transition(state, fired, workspace_, options_.on_event);
     if (!transition.failure.empty()) return fail(IntegrationStatus::transition_failed, state, transition.failure);
