@@ -6,12 +6,12 @@ namespace tenon::peg {
 
 namespace {
 
-constexpr int kCornerRight = 1, kLowerEdgeLeft = 2;
+constexpr std::size_t kCornerRight = 1, kLowerEdgeLeft = 2;
 
 struct Stance {
   const char* name;
   Vector3d pose;  // mm, the hole's mouth in the origin
-  std::vector<int> contacts;
+  std::vector<std::size_t> contacts;
 };
 
 std::vector<Stance> stances(const Geometry& g) {
@@ -42,8 +42,9 @@ std::vector<LinearMode> linear_modes(const World& world, const Impedance& impeda
                     Eigen::MatrixXd::Zero(3, 3),
                     period,
                     delay};
-    for (const int contact : stance.contacts) {
-      const Vector3d n = exact_gap(world.geometry, contact, stance.pose, Vector3d::Zero()).normal.cwiseProduct(to_si);
+    const std::array<ExactGap, kContacts> gaps = exact_gaps(world.geometry, stance.pose, Vector3d::Zero());
+    for (const std::size_t contact : stance.contacts) {
+      const Vector3d n = gaps[contact].normal.cwiseProduct(to_si);
       mode.contact_stiffness += k * n * n.transpose();
       mode.contact_damping += d * n * n.transpose();
     }
