@@ -80,6 +80,7 @@ TEST_F(Report, TellsRecordsByTheirColumns) {
   EXPECT_EQ(kind("problem,solver,status,time_s"), RecordKind::comparison);
   EXPECT_EQ(kind("cost,ratio,ipopt"), RecordKind::profile);
   EXPECT_EQ(kind("nx,ny,nz,force"), RecordKind::sphere);
+  EXPECT_EQ(kind("frequency,impedance_off"), RecordKind::frequency);
   EXPECT_EQ(kind("seed,success,offset"), RecordKind::sweep);
 }
 

@@ -22,7 +22,7 @@ const std::vector<Signature>& signatures() {
       {RecordKind::events, {"t", "contact", "from", "to"}},   {RecordKind::fast_phases, {"t", "contact", "tau"}},
       {RecordKind::comparison, {"problem", "solver", "status"}}, {RecordKind::profile, {"cost", "ratio"}},
       {RecordKind::sphere, {"nx", "ny", "nz"}},               {RecordKind::sweep, {"success"}},
-      {RecordKind::trajectory, {"t"}},
+      {RecordKind::trajectory, {"t"}},                           {RecordKind::frequency, {"frequency"}},
   };
   return table;
 }
@@ -79,7 +79,7 @@ RecordKind record_kind(const CsvTable& table) {
     }
   }
   throw InputError({table.file, 1, 1}, "the columns " + first_columns(table) + " are of no record that a report knows",
-                   "one with a time t, or a comparison, a profile, a sweep or a map over directions");
+                   "one with a time t or a frequency, or a comparison, a profile, a sweep or a map over directions");
 }
 
 CsvTable read_record(const std::string& file) {

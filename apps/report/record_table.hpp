@@ -14,6 +14,7 @@ enum class RecordKind {
   fast_phases,  // t, contact, tau: collisions in their own time
   comparison,   // problem, solver, status
   profile,      // cost, ratio: performance profiles, one column for each solver
+  frequency,    // frequency: quantities over it, on logarithmic axes
   sphere,       // nx, ny, nz: quantities over unit directions
   sweep,        // success: samples of a Monte Carlo
   trajectory,   // t

@@ -69,6 +69,7 @@ Json part_json(const Part& part) {
     case RecordKind::trace: return table_json(part.table, longest_solves(part.table, kMaxIterations), "index").set("kind", "trace");
     case RecordKind::comparison: return table_json(part.table).set("kind", "comparison");
     case RecordKind::profile: return table_json(part.table).set("kind", "profile");
+    case RecordKind::frequency: return table_json(part.table).set("kind", "frequency");
     case RecordKind::sphere: return table_json(part.table).set("kind", "sphere");
     case RecordKind::sweep: return table_json(part.table).set("kind", "sweep");
     case RecordKind::events:

@@ -4,13 +4,14 @@ import "./page.css";
 import {Comparison, Profile} from "./comparison.js";
 import {Convergence} from "./convergence.js";
 import {element, showAll, showNear} from "./element.js";
+import {FrequencyResponse} from "./frequency.js";
 import {Record} from "./record.js";
 import {SphereMap} from "./sphere_map.js";
 import {Sweep} from "./sweep.js";
 import {toggleTheme} from "./theme.js";
 import {kKeys, pressKey} from "./transport.js";
 
-const kParts = {trajectory: Record, trace: Convergence, comparison: Comparison, profile: Profile, sphere: SphereMap, sweep: Sweep};
+const kParts = {trajectory: Record, trace: Convergence, comparison: Comparison, profile: Profile, frequency: FrequencyResponse, sphere: SphereMap, sweep: Sweep};
 
 function makeHelp() {
   const help = element("dialog", {"aria-label": "Keys"}, element("h2", {}, "Keys"),
