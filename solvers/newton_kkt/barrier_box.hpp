@@ -102,7 +102,7 @@ class BarrierBox {
     };
     const Eigen::Index size = v.size(), whole = size - size % kLanes;
     for (Eigen::Index i = 0; i < whole; i += kLanes) multiply(factors(i, Eigen::fix<kLanes>).prod());
-    for (Eigen::Index i = whole; i < size; ++i) multiply(factors(i, Eigen::fix<1>).value());
+    for (Eigen::Index i = whole; i < size; ++i) multiply(factors(i, Eigen::fix<1>).prod());
     return sum + std::log(product);
   }
 
