@@ -59,7 +59,7 @@ int run_check(const Arguments& arguments) {
   validate(*problem, bounds);
   const Vector& start = named.start.x;
 
-  std::mt19937_64 random(arguments.seed.value_or(1));
+  std::mt19937_64 random(arguments.seed);
   std::normal_distribution<double> normal;
   DerivativeReport report;
   for (int k = 0; k <= kRandomPoints; ++k) {

@@ -25,6 +25,8 @@ const std::map<std::string, std::function<CLI::Option*(CLI::App&, Arguments&)>>&
   static const CLI::Validator count = CLI::Range(0, 1 << 30).description("");
   static const std::map<std::string, std::function<CLI::Option*(App&, Args&)>> table{
       {"wrenches", [](App& a, Args& v) { return a.add_option("--wrenches", v.wrenches, "the wrench log")->type_name("FILE.csv"); }},
+      {"measurements",
+       [](App& a, Args& v) { return a.add_option("--measurements", v.measurements, "the record to estimate from")->type_name("FILE.csv"); }},
       {"output", [](App& a, Args& v) { return a.add_option("--output", v.output, "where the record goes")->type_name("FILE.csv"); }},
       {"events", [](App& a, Args& v) { return a.add_option("--events", v.events, "where the events go")->type_name("FILE.csv"); }},
       {"fast-phase",
@@ -68,8 +70,22 @@ const std::map<std::string, std::function<CLI::Option*(CLI::App&, Arguments&)>>&
        [](App& a, Args& v) {
          return a.add_option("--time-limit", v.time_limit, "where a solve gives up, s")->type_name("S")->check(finite);
        }},
-      {"seed", [](App& a, Args& v) { return a.add_option("--seed", v.seed, "of random numbers")->type_name("N"); }},
+      {"seed",
+       [](App& a, Args& v) {
+         const auto note = [&v](const std::string&) { v.seed_is_given = true; };
+         return a.add_option("--seed", v.seed, "of random numbers")->type_name("N")->capture_default_str()->each(note);
+       }},
       {"rows", [](App& a, Args& v) { return a.add_option("--rows", v.rows, "random rows of a vehicle")->type_name("N")->check(count); }},
+      {"samples", [](App& a, Args& v) { return a.add_option("--samples", v.samples, "worlds to draw")->type_name("N")->check(count); }},
+      {"baselines", [](App& a, Args& v) { return a.add_flag("--baselines", v.baselines, "the scene's baselines in the same worlds, too"); }},
+      {"margins", [](App& a, Args& v) { return a.add_flag("--margins", v.margins, "of stability in each mode, and of capture"); }},
+      {"resume", [](App& a, Args& v) { return a.add_flag("--resume", v.resume, "go on where an earlier sweep into --output ended"); }},
+      {"threads",
+       [](App& a, Args& v) {
+         return a.add_option("--threads", v.threads, "workers of this process; every core without it")
+             ->type_name("N")
+             ->check(CLI::Range(1, 1 << 12).description(""));
+       }},
       {"starts",
        [](App& a, Args& v) {
          return a.add_option("--starts", v.starts, "solve from so many points; the best answer counts")

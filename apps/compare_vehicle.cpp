@@ -43,8 +43,7 @@ int compare_vehicle(const std::string& name, const Arguments& arguments) {
   vehicle.hard_limits = false;
   const Options options = arguments.options();
   const std::vector<SolverDescription> solvers = chosen_solvers(arguments, solvers_of_rows());
-  const std::uint64_t seed = arguments.seed.value_or(1);
-  const std::vector<RandomRow> rows = random_rows(vehicle, arguments.rows > 0 ? arguments.rows : kDefaultRows, seed);
+  const std::vector<RandomRow> rows = random_rows(vehicle, arguments.rows > 0 ? arguments.rows : kDefaultRows, arguments.seed);
   const std::unique_ptr<AllocationRow> problem = make_allocation_row(vehicle, options);
 
   std::vector<std::string> names;
@@ -78,14 +77,14 @@ int compare_vehicle(const std::string& name, const Arguments& arguments) {
               .set("schema", 1)
               .set("problem", vehicle.name)
               .set("rows", static_cast<long>(rows.size()))
-              .set("seed", static_cast<long>(seed))
+              .set("seed", static_cast<long>(arguments.seed))
               .set("tolerance", options.tolerance)
               .set("timed_runs", kTimedRuns)
               .set("solvers", solvers_json(solvers))
               .set("results", comparison.json()));
     return kFinished;
   }
-  fmt::print("{}: {} random rows, seed {}; soft limits, start from the linear solution\n{}\n", vehicle.name, rows.size(), seed,
+  fmt::print("{}: {} random rows, seed {}; soft limits, start from the linear solution\n{}\n", vehicle.name, rows.size(), arguments.seed,
              comparison.text());
   fmt::print(
       "agree: rows within 1e-6 of the lowest objective that any solver found (relative); above best: the largest distance from it\n"

@@ -15,6 +15,7 @@
 #include "tenon/problems/contact/scene_file.hpp"
 #include "tenon/problems/delta/robot_file.hpp"
 #include "tenon/problems/delta/scene_file.hpp"
+#include "tenon/problems/flight/mission_file.hpp"
 #include "tenon/problems/tasks.hpp"
 #include "tenon/solvers/make_solver.hpp"
 
@@ -64,22 +65,20 @@ std::vector<Named> scenes() {
   return list;
 }
 
-std::vector<Named> none() {
-  return {};
+std::vector<Named> missions() {
+  std::vector<Named> list;
+  for (const std::string& name : flight::builtin_missions()) list.push_back({name, flight::describe_builtin_mission(name)});
+  return list;
 }
 
 const std::vector<Kind>& kinds() {
-  static const std::vector<Kind> table{{"problems", &problems}, {"vehicles", &vehicles}, {"missions", &none},
+  static const std::vector<Kind> table{{"problems", &problems}, {"vehicles", &vehicles}, {"missions", &missions},
                                        {"scenes", &scenes},     {"robots", &robots},     {"solvers", &solvers}};
   return table;
 }
 
 void print_kind(const Kind& kind) {
   const std::vector<Named> entries = kind.entries();
-  if (entries.empty()) {
-    fmt::print("{}: none yet\n", kind.name);
-    return;
-  }
   fmt::print("{}:\n", kind.name);
   Table table({"", "", ""});
   for (const Named& entry : entries)

@@ -1,53 +1,19 @@
-// tenon: reads the command line, runs the verb, and turns whatever went wrong into one line and an exit code.
-#include <fmt/format.h>
-
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <stdexcept>
-#include <system_error>
-
+// tenon: reads the command line and runs the verb.
 #include "tenon/apps/ampl.hpp"
 #include "tenon/apps/command_line.hpp"
-#include "tenon/apps/interrupt.hpp"
-#include "tenon/core/input_error.hpp"
-#include "tenon/core/output_file.hpp"
+#include "tenon/apps/guarded_main.hpp"
+#include "tenon/apps/sweep/mpirun.hpp"
 
 namespace {
 
 int run_verb(int argc, char** argv) {
+  if (tenon::is_shared_sweep(argc, argv)) return tenon::run_shared_sweep(argv);
   const auto invocation = tenon::read_command_line(argc, argv);
   return invocation ? invocation->verb->run(invocation->arguments) : tenon::kFinished;
-}
-
-int run(int argc, char** argv) {
-  tenon::watch_for_interrupts();
-  const int code = tenon::is_ampl_call(argc, argv) ? tenon::run_ampl(argc, argv) : run_verb(argc, argv);
-  if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
-    throw tenon::OutputError(fmt::format("standard output: cannot be written: {}", std::strerror(errno)));
-  }
-  return code;
-}
-
-int explain(const std::exception& error, tenon::ExitCode code) {
-  fmt::print(stderr, "tenon: {}\n", error.what());
-  return code;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const tenon::InputError& error) {
-    return explain(error, tenon::kBadInput);
-  } catch (const std::invalid_argument& error) {
-    return explain(error, tenon::kBadInput);
-  } catch (const tenon::OutputError& error) {
-    return explain(error, tenon::kNoOutput);
-  } catch (const std::system_error& error) {  // fmt, where its output does not fit the buffer of standard output
-    return explain(tenon::OutputError("standard output: cannot be written: " + error.code().message()), tenon::kNoOutput);
-  } catch (const std::exception& error) {
-    return explain(error, tenon::kNotSolved);
-  }
+  return tenon::guarded_main([&] { return tenon::is_ampl_call(argc, argv) ? tenon::run_ampl(argc, argv) : run_verb(argc, argv); });
 }

@@ -163,7 +163,7 @@ int run_mpc(const Arguments& given) {
   apply(arguments, task.options);
   const std::string solver = arguments.solver.value_or(default_solver());
   const SolverFactory factory = [&](const Nlp& problem, const Options& options) { return make_solver(solver, problem, options); };
-  const std::uint64_t seed = arguments.seed.value_or(0);
+  const std::uint64_t seed = arguments.seed_is_given ? arguments.seed : 0;
 
   const std::vector<std::string> names = controller_names(task);
   const auto controller = take_controller(task, names.front(), factory);

@@ -14,6 +14,7 @@ packages=(
   libeigen3-dev libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
   coinor-libipopt-dev libnlopt-dev libsundials-dev libsuitesparse-dev libamplsolver-dev
   libgtest-dev libgmock-dev libbenchmark-dev
+  libopenmpi-dev openmpi-bin
 )
 test_packages=(chromium)  # opens the report page
 

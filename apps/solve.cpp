@@ -28,7 +28,7 @@ constexpr int kVariablesShown = 20;
 MultiStart try_starts(NamedProblem& named, const std::string& solver, Options options, const Arguments& arguments) {
   options.on_iteration = [](const Iteration&) { return !interrupted(); };
   MultiStart tried =
-      multi_start(*named.problem, *make_solver(solver, *named.problem, options), named.start, arguments.starts, arguments.seed.value_or(1));
+      multi_start(*named.problem, *make_solver(solver, *named.problem, options), named.start, arguments.starts, arguments.seed);
   named.start = tried.optima.front().start;
   if (named.maximises) {
     for (Optimum& optimum : tried.optima) optimum.result.objective *= -1;

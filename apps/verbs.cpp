@@ -1,3 +1,4 @@
+#include "tenon/apps/sweep/run_sweep.hpp"
 #include "tenon/apps/verb.hpp"
 
 namespace tenon {
@@ -6,13 +7,16 @@ int run_allocate(const Arguments&);
 int run_bench(const Arguments&);
 int run_check(const Arguments&);
 int run_compare(const Arguments&);
+int run_estimate(const Arguments&);
 int run_fit(const Arguments&);
+int run_fly(const Arguments&);
 int run_list(const Arguments&);
 int run_mpc(const Arguments&);
 int run_report(const Arguments&);
 int run_robot(const Arguments&);
 int run_simulate(const Arguments&);
 int run_solve(const Arguments&);
+int run_sweep(const Arguments&);
 
 const std::vector<Verb>& verbs() {
   static const std::vector<Verb> table{
@@ -32,6 +36,13 @@ const std::vector<Verb>& verbs() {
        1,
        {"inverse", "forward", "jacobians", "workspace", "impedance", "set", "json", "quiet"},
        &run_robot},
+      {"fly",
+       "a mission in closed loop: pose controller, allocation, actuators, rigid body",
+       "MISSION",
+       1,
+       1,
+       {"output", "events", "report", "solver", "set", "seed", "json", "quiet", "real-time"},
+       &run_fly},
       {"fit", "thrust and torque polynomials from calibration data", "BENCH.csv", 1, 1, {"degree", "constant", "json"}, &run_fit},
       {"simulate",
        "a scene in time: bodies, contacts, events, energy",
@@ -40,6 +51,13 @@ const std::vector<Verb>& verbs() {
        1,
        {"output", "events", "report", "fast-phase", "solver", "set", "tolerance", "json", "quiet", "real-time"},
        &run_simulate},
+      {"estimate",
+       "a scene's hidden state and parameters, from a record",
+       "SCENE",
+       1,
+       1,
+       {"measurements", "output", "report", "set", "json", "quiet"},
+       &run_estimate},
       {"mpc",
        "a receding horizon against its simulated world",
        "SCENE",
@@ -47,6 +65,7 @@ const std::vector<Verb>& verbs() {
        1,
        {"output", "report", "solver", "set", "seed", "tolerance", "max-iterations", "time-limit", "json", "quiet", "real-time"},
        &run_mpc},
+      sweep_verb(&run_sweep),
       {"solve",
        "one nonlinear program",
        "PROBLEM",

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "tenon/core/estimator.hpp"
 #include "tenon/core/horizon_options.hpp"
 #include "tenon/core/horizon_program.hpp"
+#include "tenon/core/linear_mode.hpp"
 #include "tenon/core/plant.hpp"
 #include "tenon/core/scenery.hpp"
 
@@ -25,6 +27,12 @@ struct ControlTask {
     std::unique_ptr<Estimator> estimator = {};
   };
 
+  /// What a task is to bear, of which one asks how much of it: an entry of the file's [parameters].
+  struct Capture {
+    std::string parameter;
+    double largest = 0;  // to look for, in the parameter's unit
+  };
+
   std::string name;
   double period = 0;    // s, of the controller
   double duration = 0;  // s, after which a run ends whatever came of it
@@ -33,6 +41,8 @@ struct ControlTask {
   std::unique_ptr<Estimator> estimator;  // null where the measurements say it all
   HorizonOptions options;                // how the program is solved, unless the caller says otherwise
   std::vector<Baseline> baselines;
+  std::vector<LinearMode> modes;   // of the inner loop, for its margins of stability
+  std::optional<Capture> capture;
   Scenery scenery;  // its picture, for the record
 };
 

@@ -54,6 +54,8 @@ class CsvWriter {
   CsvWriter& operator<<(std::string_view text);  // a plain word: no comma, quote or newline
   void end_row();
 
+  /// What was written so far is on the disk, whatever happens next. Throws OutputError.
+  void flush() { file_.flush(); }
   /// Only now does the file take its name. Throws OutputError.
   void finish() { file_.finish(); }
 

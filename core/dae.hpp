@@ -2,6 +2,8 @@
 //
 //     F(mode, t, xdot, x, y, u) = 0        x differential, y algebraic, u inputs;   [dF/dxdot, dF/dy] is regular
 //
+// Position constraints may stand in it in their stabilised form of index 2 instead: see `has_manifold`.
+//
 // The mode is what stays constant between two events: one integer for each contact, and whatever reals are held (the output of a
 // sampled controller). Integrators copy it and never look inside. Sizes and patterns are the same in all modes: a contact that is off has
 // the row lambda = 0. An event is a guard that falls through zero, or a clock that strikes; `transition` then decides what becomes of the
@@ -97,6 +99,9 @@ class Dae {
   /// Its values, in the order of the pattern.
   virtual void jacobian(const DaeMode& mode, const DaePoint& at, double alpha, Workspace& workspace, std::span<double> values) const = 0;
 
+  /// Non-zeros of dF/dxdot, (nx + ny) x nx: those of the Jacobian with alpha that the one without does not account for. Dense by default.
+  virtual SparsePattern rate_jacobian_pattern() const { return SparsePattern::full(num_states() + num_algebraics(), num_states()); }
+
   /// dF/du, (nx + ny) x num_inputs.
   virtual SparsePattern input_jacobian_pattern() const { return SparsePattern::full(num_states() + num_algebraics(), num_inputs()); }
   virtual void input_jacobian(const DaeMode& mode, const DaePoint& at, Workspace& workspace, std::span<double> values) const {
@@ -126,6 +131,19 @@ class Dae {
   }
   virtual void exact_flow(const DaeMode& mode, double dt, ConstVectorRef x, VectorRef next) const {
     static_cast<void>(mode), static_cast<void>(dt), static_cast<void>(x), static_cast<void>(next);
+  }
+
+  /// Where F holds position constraints and their first derivatives themselves, each with a multiplier in y: the stabilised index 2 form.
+  /// Such a Dae has `derivatives`, which count where x is on that manifold, and `project` takes x to its nearest point there (false where
+  /// it cannot). Integrators do so at every start and, where they solve for derivatives instead of F, after each step. Source: C. W. Gear,
+  /// B. Leimkuhler, G. K. Gupta, J. Comput. Appl. Math. 12-13 (1985) 77.
+  virtual bool has_manifold(const DaeMode& mode) const {
+    static_cast<void>(mode);
+    return false;
+  }
+  virtual bool project(const DaeMode& mode, double t, VectorRef x, Workspace& workspace) const {
+    static_cast<void>(mode), static_cast<void>(t), static_cast<void>(x), static_cast<void>(workspace);
+    return true;
   }
 
   /// Values whose fall through zero ends the mode. A guard that starts at or below zero is asleep until it has been positive.

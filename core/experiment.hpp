@@ -17,8 +17,11 @@ class Experiment {
  public:
   virtual ~Experiment() = default;
 
-  /// Of the row's columns: what was drawn, then what came of it; `success` (0 or 1) is among them.
+  /// Of the row's columns: what was drawn, then `success` (0 or 1), then what else came of it.
   virtual std::vector<std::string> names() const = 0;
+
+  /// The column whose greatest value is the worst; of runs that fail as of those that do not, but those that fail are worse.
+  virtual std::string severity() const { return {}; }
 
   /// One run; fills one value for each name.
   virtual void run(std::uint64_t seed, VectorRef row) = 0;

@@ -21,14 +21,14 @@ bool is_standard_output(const std::string& path) {
   return path == "-";
 }
 
+}  // namespace
+
 bool is_written_directly(const std::string& path) {
   if (is_standard_output(path) || path.starts_with("/dev/")) return true;
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
 }
-
-}  // namespace
 
 void check_output_path(const std::string& path) {
   if (is_standard_output(path)) return;

@@ -46,6 +46,9 @@ class OutputFile {
   std::string buffer_;  // complete records not yet written
 };
 
+/// Whether that target is no regular file: it is written directly, without FILE.partial.
+bool is_written_directly(const std::string& path);
+
 /// Throws as the constructor of OutputFile would, without opening anything: so that a long job does not find out at its end.
 void check_output_path(const std::string& path);
 

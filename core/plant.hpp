@@ -35,10 +35,12 @@ class Plant {
   virtual std::string output_name(int i) const = 0;
   virtual void outputs(VectorRef values) const = 0;
 
-  /// Of a sweep: first what was drawn, then what came of it (`success` 0 or 1 among them, times, forces), at the end of a run.
+  /// Of a sweep, at the end of a run: first what was drawn, then `success` (0 or 1), then what else came of it: times, forces.
   virtual int num_verdicts() const = 0;
   virtual std::string verdict_name(int i) const = 0;
   virtual void verdicts(VectorRef values) const = 0;
+  /// The verdict whose greatest value is the worst.
+  virtual std::string severity() const { return {}; }
 
   virtual std::string measurement_name(int i) const { return "measured" + std::to_string(i + 1); }
   virtual std::string command_name(int i) const { return "command" + std::to_string(i + 1); }

@@ -41,6 +41,7 @@ class ClosedLoopExperiment final : public Experiment {
   ClosedLoopExperiment(std::unique_ptr<Plant> plant, std::unique_ptr<Controller> controller, double duration);
 
   std::vector<std::string> names() const override;
+  std::string severity() const override { return plant_->severity(); }
   void run(std::uint64_t seed, VectorRef row) override;
 
  private:

@@ -232,7 +232,7 @@ TEST(WristGimbals, CoriolisTorquesTakeTheWorkOfTheChangingInertia) {
   EXPECT_LE((gimbals.coriolis(angle, rate) - c).norm(), 1e-12);
   const Vector3 w(5, 6, 7);
   EXPECT_LE((gimbals.acceleration(angle, rate, gimbals.linearising_torque(angle, rate, w)) - w).norm(), 1e-12);
-  EXPECT_NEAR(WristGimbals::attitude(angle).determinant(), 1, 1e-15);
+  EXPECT_NEAR(GimbalFrame(angle).attitude.determinant(), 1, 1e-15);
 }
 
 TEST(WristGimbals, TheEnergyIsThatOfTheThreeBodies) {
@@ -240,9 +240,11 @@ TEST(WristGimbals, TheEnergyIsThatOfTheThreeBodies) {
   const WristGimbals gimbals{{1e-4, 2e-4, 3e-4}};
   const Vector3 angle(0.3, 0.7, -0.4), rate(1, -2, 3);
   constexpr double kStep = 1e-6;
-  const Matrix3 spin = (WristGimbals::attitude(angle + kStep * rate) - WristGimbals::attitude(angle - kStep * rate)) / (2 * kStep) *
-                       WristGimbals::attitude(angle).transpose();
-  const double tool = Vector3(spin(2, 1), spin(0, 2), spin(1, 0)).squaredNorm();
+  const Matrix3 spin = (GimbalFrame(angle + kStep * rate).attitude - GimbalFrame(angle - kStep * rate).attitude) / (2 * kStep) *
+                       GimbalFrame(angle).attitude.transpose();
+  const Vector3 turning(spin(2, 1), spin(0, 2), spin(1, 0));
+  EXPECT_LE((GimbalFrame(angle).axes * rate - turning).norm(), 1e-8);
+  const double tool = turning.squaredNorm();
   const double expected = (1e-4 * 1 + 2e-4 * (1 + 4) + 3e-4 * tool) / 2;
   EXPECT_NEAR(gimbals.kinetic_energy(angle, rate), expected, 1e-12);
 }

@@ -15,9 +15,9 @@ struct Ended {
   std::string out, err;
 };
 
-/// Runs `tenon arguments` through the shell, in the test's own folder.
-inline Ended run_tenon(const ScratchFolder& folder, const std::string& arguments) {
-  const std::string command = "cd '" + folder.path("") + "' && '" TENON_BINARY "' " + arguments + " > stdout.txt 2> stderr.txt";
+/// Runs `tenon arguments` through the shell, in the test's own folder; `prefix` is what stands before it, such as `mpirun -np 2`.
+inline Ended run_tenon(const ScratchFolder& folder, const std::string& arguments, const std::string& prefix = "") {
+  const std::string command = "cd '" + folder.path("") + "' && " + prefix + " '" TENON_BINARY "' " + arguments + " > stdout.txt 2> stderr.txt";
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), folder.read("stdout.txt"), folder.read("stderr.txt")};
 }

@@ -5,6 +5,7 @@ namespace tenon {
 void add_allocation(std::vector<Benchmark>& rows);
 void add_contact(std::vector<Benchmark>& rows);
 void add_delta(std::vector<Benchmark>& rows);
+void add_flight(std::vector<Benchmark>& rows);
 void add_linear_allocation(std::vector<Benchmark>& rows);
 void add_linear_quadratic(std::vector<Benchmark>& rows);
 void add_receding_horizon(std::vector<Benchmark>& rows);
@@ -18,6 +19,7 @@ std::vector<Benchmark> benchmarks() {
   add_linear_quadratic(rows);
   add_contact(rows);
   add_delta(rows);
+  add_flight(rows);
   add_receding_horizon(rows);
   return rows;
 }

@@ -43,7 +43,7 @@ void push_of(const Constraint<D>& c, const GapValue<S, D>& g, const Pose<S, D>& 
 
 template <class S, int D>
 struct ConstraintRows {
-  S law, power;
+  S h, hdot, law, power;
   Velocities<S, D> H_A, H_B, on_a, on_b;
 };
 
@@ -53,6 +53,8 @@ ConstraintRows<S, D> constraint_rows(const Constraint<D>& c, const Gap<D>& gap, 
   const GapValue<S, D> g = evaluate_gap<S, D>(gap, t, A, B, q_a, q_b);
   ConstraintRows<S, D> out;
   push_of<S, D>(c, g, A, B, out.on_a, out.on_b, out.power);
+  out.h = g.h;
+  out.hdot = g.hdot;
   out.law = g.bias + S(c.law.alpha1) * g.hdot + S(c.law.alpha0) * g.h + S(c.law.alpha3) * g.h * g.h * g.h;
   out.H_A = g.H_A;
   out.H_B = g.H_B;

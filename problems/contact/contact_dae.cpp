@@ -13,7 +13,9 @@ namespace tenon::contact {
 
 namespace {
 
-constexpr double kRank = 1e-11;  // of H M^-1 H': smaller pivots count as dependent contacts
+constexpr double kRank = 1e-11;         // of H M^-1 H': smaller pivots count as dependent contacts
+constexpr int kMostProjections = 10;    // Newton's steps back to the joints of index 2
+constexpr double kClosedJoint = 1e-12;  // m or rad: one more step squares it away
 
 const std::vector<std::string>& position_names(int dimension) {
   static const std::vector<std::string> planar{"x", "y", "theta"}, spatial{"x", "y", "z", "qw", "qx", "qy", "qz"};
@@ -57,10 +59,11 @@ ContactDae<D>::ContactDae(Scene<D> scene) : scene_(std::move(scene)) {
       state_names_.push_back("work_" + scene_.forces[k].name);
     }
   }
-  for (int i = 0; i < num_algebraics(); ++i) {
+  for (int i = 0; i < num_constraints(); ++i) {
     const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
     order_.push_back(i);
     if (!c.is_joint()) contacts_.push_back(i);
+    if (c.is_index_2()) index_2_.push_back(i);
     has_friction_ |= c.friction > 0;
     has_one_law_ |= !c.is_joint() && !c.is_two_scale;
     is_ballistic_ &= !c.is_joint();
@@ -89,7 +92,7 @@ Dae::Workspace ContactDae<D>::make_workspace() const {
   const std::size_t n = scene_.bodies.size() + 1, m = scene_.constraints.size();  // the world stands last
   bodies->q.assign(n, Body<D>().q);
   bodies->v.assign(n, Velocities<double, D>::Zero());
-  bodies->force = bodies->acceleration = bodies->v;
+  bodies->force = bodies->acceleration = bodies->travel = bodies->v;
   bodies->poses.assign(n, Pose<double, D>(Body<D>().q, Velocities<double, D>::Zero()));
   for (std::size_t i = 0; i < scene_.bodies.size(); ++i) bodies->q[i] = scene_.bodies[i].q;
   bodies->gaps.resize(m);
@@ -178,14 +181,10 @@ GapValue<double, D> ContactDae<D>::gap(int constraint, double t, ConstVectorRef 
   return gap_of(constraint, t, bodies);
 }
 
-/// (H M^-1 H' + r) lambda = -(Hdot v + alpha1 h' + alpha0 h + alpha3 h^3) - H M^-1 Q over the active constraints; 0 elsewhere.   (3)
+/// Factors of H M^-1 H' + r over the active constraints.
 template <int D>
-void ContactDae<D>::solve_multipliers(const DaeMode& mode, double t, Bodies& bodies) const {
-  for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
-    bodies.acceleration[i] = inverse_masses_[i].cwiseProduct(bodies.force[i]);
-  }
+void ContactDae<D>::factorise(const DaeMode& mode, double t, Bodies& bodies) const {
   bodies.active.clear();
-  bodies.lambda.setZero();
   for (const int i : order_) {
     const int m = mode.discrete[static_cast<std::size_t>(i)];
     if (m != kContact && m != kCollision) continue;
@@ -237,19 +236,76 @@ void ContactDae<D>::solve_multipliers(const DaeMode& mode, double t, Bodies& bod
       else
         bodies.skyline(row, column) = sum;
     }
-    const double law = g.bias - c.law.acceleration(g.h, g.hdot);
-    bodies.rhs[row] = -law;
-    bodies.rhs[row] -= g.H_A.dot(of(bodies.acceleration, c.a)) + g.H_B.dot(of(bodies.acceleration, c.b));
   }
   if (has_friction_) {
     bodies.lu.compute(bodies.dense);
-    bodies.rhs = bodies.lu.solve(bodies.rhs).eval();
     bodies.defect = bodies.lu.matrixLU().diagonal().cwiseAbs().minCoeff() <= kRank * bodies.dense.diagonal().cwiseAbs().maxCoeff();
   } else {
     bodies.defect = bodies.skyline.factorise(kRank);
-    bodies.skyline.solve(bodies.rhs);
   }
+}
+
+/// rhs, in the order of the active constraints, is solved for lambda; 0 elsewhere.
+template <int D>
+void ContactDae<D>::solve(Bodies& bodies) const {
+  bodies.lambda.setZero();
+  const int k = static_cast<int>(bodies.active.size());
+  if (k == 0) return;
+  if (has_friction_)
+    bodies.rhs = bodies.lu.solve(bodies.rhs).eval();
+  else
+    bodies.skyline.solve(bodies.rhs);
   for (int row = 0; row < k; ++row) bodies.lambda[bodies.active[static_cast<std::size_t>(row)]] = bodies.rhs[row];
+}
+
+/// (H M^-1 H' + r) lambda = -(Hdot v + alpha1 h' + alpha0 h + alpha3 h^3) - H M^-1 Q over the active constraints.   (3)
+template <int D>
+void ContactDae<D>::solve_multipliers(const DaeMode& mode, double t, Bodies& bodies) const {
+  for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+    bodies.acceleration[i] = inverse_masses_[i].cwiseProduct(bodies.force[i]);
+  }
+  factorise(mode, t, bodies);
+  for (std::size_t row = 0; row < bodies.active.size(); ++row) {
+    const std::size_t i = static_cast<std::size_t>(bodies.active[row]);
+    const Constraint<D>& c = scene_.constraints[i];
+    const GapValue<double, D>& g = bodies.gaps[i];
+    bodies.rhs[static_cast<int>(row)] =
+        c.law.acceleration(g.h, g.hdot) - g.bias - g.H_A.dot(of(bodies.acceleration, c.a)) - g.H_B.dot(of(bodies.acceleration, c.b));
+  }
+  solve(bodies);
+}
+
+/// Newton's method on h = 0 and h' = 0 of the joints of index 2, each step the shortest in the metric of M:  dq = E M^-1 H' mu with
+/// H M^-1 H' mu = -h,  likewise dv from -h'. What else is active stays where it is.   (20)
+template <int D>
+bool ContactDae<D>::project(const DaeMode& mode, double t, VectorRef x, Workspace& workspace) const {
+  auto& bodies = static_cast<Bodies&>(*workspace);
+  const auto move = [&](auto error, auto apply) {
+    double largest = 0;
+    for (std::size_t row = 0; row < bodies.active.size(); ++row) {
+      const std::size_t i = static_cast<std::size_t>(bodies.active[row]);
+      const double e = scene_.constraints[i].is_index_2() ? error(bodies.gaps[i]) : 0;
+      bodies.rhs[static_cast<int>(row)] = -e;
+      largest = std::max(largest, std::abs(e));
+    }
+    solve(bodies);
+    for (auto& step : bodies.acceleration) step.setZero();
+    set_accelerations(bodies);
+    for (std::size_t i = 0; i < places_.size(); ++i) apply(places_[i], i);
+    return largest;
+  };
+  for (int k = 0; k < kMostProjections; ++k) {
+    load(t, x, bodies);
+    factorise(mode, t, bodies);
+    const double open =
+        move([](const auto& g) { return g.h; },
+             [&](Place at, std::size_t i) { x.segment(at.q, at.nq) += along(bodies.q[i], bodies.acceleration[i]).head(at.nq); });
+    move([](const auto& g) { return g.hdot; },
+         [&](Place at, std::size_t i) { x.segment(at.v, at.nv) += bodies.acceleration[i].head(at.nv); });
+    if (!x.allFinite()) return false;
+    if (open <= kClosedJoint) return true;
+  }
+  return false;
 }
 
 /// vdot = M^-1 (Q + sum H' lambda), on top of M^-1 Q which stands there already.
@@ -277,7 +333,8 @@ void ContactDae<D>::derivatives(const DaeMode& mode, double t, ConstVectorRef x,
     xdot.segment(at.q, at.nq) = position_rates(bodies.q[i], bodies.v[i]).head(at.nq);
     xdot.segment(at.v, at.nv) = bodies.acceleration[i].head(at.nv);
   }
-  y = bodies.lambda;
+  y.head(num_constraints()) = bodies.lambda;
+  y.tail(num_algebraics() - num_constraints()).setZero();  // mu, where x is on its manifold
   if (!scene_.with_audit) return;
   for (const int i : bodies.active) xdot[works_ + i] = bodies.lambda[i] * bodies.push_power[static_cast<std::size_t>(i)];
 }
@@ -291,12 +348,21 @@ void ContactDae<D>::residual(const DaeMode& mode, const DaePoint& at, Workspace&
   if (scene_.with_audit) {
     F.segment(works_, num_states_ - works_) = at.xdot.tail(num_states_ - works_) - F.segment(works_, num_states_ - works_);
   }
+  std::copy(bodies.v.begin(), bodies.v.end(), bodies.travel.begin());
+  for (std::size_t k = 0; k < index_2_.size(); ++k) {
+    const int i = index_2_[k], mu = num_constraints() + static_cast<int>(k);
+    const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
+    const GapValue<double, D> g = gap_of(i, at.t, bodies);
+    of(bodies.travel, c.a) += at.y[mu] * of(inverse_masses_, c.a).cwiseProduct(g.H_A);
+    of(bodies.travel, c.b) += at.y[mu] * of(inverse_masses_, c.b).cwiseProduct(g.H_B);
+    F[num_states_ + mu] = g.h;
+  }
   for (std::size_t i = 0; i < places_.size(); ++i) {
     const Place p = places_[i];
-    F.segment(p.q, p.nq) = at.xdot.segment(p.q, p.nq) - position_rates(bodies.q[i], bodies.v[i]).head(p.nq);
+    F.segment(p.q, p.nq) = at.xdot.segment(p.q, p.nq) - position_rates(bodies.q[i], bodies.travel[i]).head(p.nq);
     for (int l = 0; l < p.nv; ++l) F[p.v + l] = at.xdot[p.v + l] / inverse_mass(static_cast<int>(i), l) - bodies.force[i][l];
   }
-  for (int i = 0; i < num_algebraics(); ++i) {
+  for (int i = 0; i < num_constraints(); ++i) {
     const int m = mode.discrete[static_cast<std::size_t>(i)];
     F[num_states_ + i] = at.y[i];
     if (m != kContact && m != kCollision) continue;
@@ -307,7 +373,7 @@ void ContactDae<D>::residual(const DaeMode& mode, const DaePoint& at, Workspace&
     double row = rows.law + softness(mode, c) * at.y[i];
     for (int l = 0; l < a.nv; ++l) F[a.v + l] -= rows.on_a[l], row += rows.H_A[l] * at.xdot[a.v + l];
     for (int l = 0; l < b.nv; ++l) F[b.v + l] -= rows.on_b[l], row += rows.H_B[l] * at.xdot[b.v + l];
-    F[num_states_ + i] = row;
+    F[num_states_ + i] = c.is_index_2() ? rows.hdot : row;
     if (scene_.with_audit) F[works_ + i] -= rows.power;
   }
 }

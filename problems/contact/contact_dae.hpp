@@ -1,11 +1,12 @@
 // A scene of bodies and contacts as a hybrid DAE of index 1.
 //
 //     qdot = E(q) v,    M vdot = Q(t, q, v) + sum_i H_i' lambda_i
-//     joint or active contact:  h_i'' + alpha1 h_i' + alpha0 h_i + alpha3 h_i^3 + r_i lambda_i = 0        r_i = 0, or tiny where contacts
-//     are redundant inactive contact:         lambda_i = 0,  h_i >= 0 work of every multiplier and of every force without potential:  Wdot
-//     = power                         so that energy - sum W stays what it was
+//     joint or active contact:  h_i'' + alpha1 h_i' + alpha0 h_i + alpha3 h_i^3 + r_i lambda_i = 0    r_i = 0, or tiny where redundant
+//     joint of index 2:         h_i' = 0,  h_i = 0,  and M^-1 H_i' mu_i in qdot
+//     inactive contact:         lambda_i = 0,  h_i >= 0
+//     work of every multiplier and of every force without potential:  Wdot = power,  so that energy - sum W stays what it was
 //
-// x holds q and v of each body in turn, then the works; y holds the multipliers. One state machine runs for each contact
+// x holds q and v of each body in turn, then the works; y holds the multipliers lambda, then mu. One state machine runs for each contact
 // (contact_transition.cpp), its fast phase in fast_phase.hpp. Derivation: contact.md.  Source: [S], the slides on contact and collision.
 #pragma once
 
@@ -46,8 +47,9 @@ class ContactDae final : public Dae {
   const Scene<D>& scene() const { return scene_; }
 
   int num_states() const override { return num_states_; }
-  int num_algebraics() const override { return static_cast<int>(scene_.constraints.size()); }
-  int num_guards() const override { return 2 * static_cast<int>(scene_.constraints.size()); }
+  int num_constraints() const { return static_cast<int>(scene_.constraints.size()); }
+  int num_algebraics() const override { return num_constraints() + static_cast<int>(index_2_.size()); }
+  int num_guards() const override { return 2 * num_constraints(); }
   void initial_state(DaeState& state) const override;
   Workspace make_workspace() const override;
   void residual(const DaeMode& mode, const DaePoint& at, Workspace& workspace, VectorRef F) const override;
@@ -58,6 +60,8 @@ class ContactDae final : public Dae {
                    VectorRef y) const override;
   bool has_exact_flow(const DaeMode& mode) const override;
   void exact_flow(const DaeMode& mode, double dt, ConstVectorRef x, VectorRef next) const override;
+  bool has_manifold(const DaeMode&) const override { return !index_2_.empty(); }
+  bool project(const DaeMode& mode, double t, VectorRef x, Workspace& workspace) const override;
   bool guards_read_derivatives(const DaeMode& mode) const override;
   void guards(const DaeMode& mode, const DaePoint& at, Workspace& workspace, VectorRef values) const override;
   Transition transition(DaeState& state, std::span<const int> fired, Workspace& workspace, const EventLog& log) const override;
@@ -67,7 +71,7 @@ class ContactDae final : public Dae {
 
   std::string name() const override { return scene_.name; }
   std::string state_name(int i) const override { return state_names_[static_cast<std::size_t>(i)]; }
-  std::string algebraic_name(int i) const override { return "lambda_" + scene_.constraints[static_cast<std::size_t>(i)].name; }
+  std::string algebraic_name(int i) const override;
   std::string output_name(int i) const override;
   std::string guard_name(int i) const override { return scene_.constraints[static_cast<std::size_t>(i / 2)].name; }
 
@@ -91,6 +95,8 @@ class ContactDae final : public Dae {
   void load(double t, ConstVectorRef x, Bodies& bodies) const;
   void apply_forces(double t, Bodies& bodies, double* powers) const;
   GapValue<double, D> gap_of(int constraint, double t, const Bodies& bodies) const;
+  void factorise(const DaeMode& mode, double t, Bodies& bodies) const;
+  void solve(Bodies& bodies) const;
   void solve_multipliers(const DaeMode& mode, double t, Bodies& bodies) const;
   void set_accelerations(Bodies& bodies) const;
   double acceleration(int constraint, const Bodies& bodies) const;
@@ -113,6 +119,7 @@ class ContactDae final : public Dae {
   std::vector<Place> places_;
   std::vector<Velocities<double, D>> inverse_masses_;  // 0 where a body has no freedom; the world's last
   std::vector<int> contacts_;                          // the constraints that are no joints
+  std::vector<int> index_2_;                           // the joints of index 2, in the order of their mu
   std::vector<int> order_;                             // of the constraints along the bodies, for the envelope
   std::vector<int> force_work_;                        // where in x a force's work stands, -1 where it has none
   std::vector<std::string> state_names_;
@@ -127,6 +134,7 @@ struct ContactDae<D>::Bodies : Dae::Scratch {
   double t = 0;
   std::vector<Positions<double, D>> q;
   std::vector<Velocities<double, D>> v, force, acceleration;
+  std::vector<Velocities<double, D>> travel;  // v + M^-1 H' mu: what the positions go by
   std::vector<Pose<double, D>> poses;
 
   std::vector<int> active;                            // constraints, in the order of the envelope

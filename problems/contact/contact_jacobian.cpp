@@ -50,7 +50,7 @@ void ContactDae<D>::find_pattern() {
     add_block(at, at);
   }
   for (int i = works_; i < num_states_ + num_algebraics(); ++i) entries.emplace_back(i, i);
-  for (int i = 0; i < num_algebraics(); ++i) {
+  for (int i = 0; i < num_constraints(); ++i) {
     const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
     const int multiplier = num_states_ + i;
     for (const int body : {c.a, c.b}) {
@@ -60,6 +60,18 @@ void ContactDae<D>::find_pattern() {
       if (scene_.with_audit) add_row(works_ + i, place(body));
     }
     if (scene_.with_audit) entries.emplace_back(works_ + i, multiplier);
+  }
+  for (std::size_t k = 0; k < index_2_.size(); ++k) {
+    const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(index_2_[k])];
+    const int mu = num_states_ + num_constraints() + static_cast<int>(k);
+    for (const int body : {c.a, c.b}) {
+      const Place at = place(body);
+      add_row(mu, at);
+      for (int r = 0; r < at.nq; ++r) {
+        for (const int other : {c.a, c.b}) add_row(at.q + r, place(other));
+        entries.emplace_back(at.q + r, mu);
+      }
+    }
   }
   for (std::size_t k = 0; k < scene_.forces.size(); ++k) {
     const Force<D>& force = scene_.forces[k];
@@ -121,7 +133,8 @@ void ContactDae<D>::jacobian(const DaeMode& mode, const DaePoint& at, double alp
     if (force_work_[k] >= 0) add_local(force_work_[k], a, b, value.power.derivatives(), -1);
   }
 
-  for (int i = 0; i < num_algebraics(); ++i) {
+  int mu = num_states_ + num_constraints();  // of the next joint of index 2
+  for (int i = 0; i < num_constraints(); ++i) {
     const int multiplier = num_states_ + i, m = mode.discrete[static_cast<std::size_t>(i)];
     if (m != kContact && m != kCollision) {
       add(multiplier, multiplier, 1);
@@ -133,22 +146,35 @@ void ContactDae<D>::jacobian(const DaeMode& mode, const DaePoint& at, double alp
     const Pose<LocalDual<D>, D> A(local.q_a, local.v_a), B(local.q_b, local.v_b);
     const Gap<D> gap = gap_at(c, of(bodies.poses, c.a), of(bodies.poses, c.b));
     const auto rows = constraint_rows<LocalDual<D>, D>(c, gap, at.t, A, B, local.q_a, local.q_b, at.y[i]);
-    LocalDual<D> law = rows.law;
-    for (int l = 0; l < a.nv; ++l) law += rows.H_A[l] * at.xdot[a.v + l];
-    for (int l = 0; l < b.nv; ++l) law += rows.H_B[l] * at.xdot[b.v + l];
-    add_local(multiplier, a, b, law.derivatives(), 1);
-    add(multiplier, multiplier, softness(mode, c));
-
     // forces and power are linear in lambda: their values at one unit are the column of lambda
     const auto unit =
         constraint_rows<double, D>(c, gap, at.t, of(bodies.poses, c.a), of(bodies.poses, c.b), of(bodies.q, c.a), of(bodies.q, c.b), 1.0);
+    if (c.is_index_2()) {
+      add_local(multiplier, a, b, rows.hdot.derivatives(), 1);
+      add_local(mu, a, b, rows.h.derivatives(), 1);
+      const auto add_travel = [&](int body, const auto& q, const auto& H) {  // E M^-1 H' mu
+        const Velocities<LocalDual<D>, D> step = of(inverse_masses_, body).template cast<LocalDual<D>>().cwiseProduct(H);
+        const Positions<LocalDual<D>, D> change = along(q, step);
+        for (int l = 0; l < place(body).nq; ++l) {
+          add_local(place(body).q + l, a, b, change[l].derivatives(), -at.y[mu - num_states_]);
+          add(place(body).q + l, mu, -change[l].value());
+        }
+      };
+      add_travel(c.a, local.q_a, rows.H_A);
+      add_travel(c.b, local.q_b, rows.H_B);
+      ++mu;
+    } else {
+      LocalDual<D> law = rows.law;
+      for (int l = 0; l < a.nv; ++l) law += rows.H_A[l] * at.xdot[a.v + l], add(multiplier, a.v + l, alpha * unit.H_A[l]);
+      for (int l = 0; l < b.nv; ++l) law += rows.H_B[l] * at.xdot[b.v + l], add(multiplier, b.v + l, alpha * unit.H_B[l]);
+      add_local(multiplier, a, b, law.derivatives(), 1);
+      add(multiplier, multiplier, softness(mode, c));
+    }
     for (int l = 0; l < a.nv; ++l) {
-      add(multiplier, a.v + l, alpha * unit.H_A[l]);
       add(a.v + l, multiplier, -unit.on_a[l]);
       add_local(a.v + l, a, b, rows.on_a[l].derivatives(), -1);
     }
     for (int l = 0; l < b.nv; ++l) {
-      add(multiplier, b.v + l, alpha * unit.H_B[l]);
       add(b.v + l, multiplier, -unit.on_b[l]);
       add_local(b.v + l, a, b, rows.on_b[l].derivatives(), -1);
     }

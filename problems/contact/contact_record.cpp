@@ -125,6 +125,13 @@ Point<double, D> ContactDae<D>::momentum(ConstVectorRef x) const {
 }
 
 template <int D>
+std::string ContactDae<D>::algebraic_name(int i) const {
+  const int k = i - num_constraints();
+  const int constraint = k < 0 ? i : index_2_[static_cast<std::size_t>(k)];
+  return (k < 0 ? "lambda_" : "mu_") + scene_.constraints[static_cast<std::size_t>(constraint)].name;
+}
+
+template <int D>
 std::string ContactDae<D>::output_name(int i) const {
   const int n = static_cast<int>(contacts_.size());
   if (i == 2 * n) return "energy";

@@ -100,19 +100,31 @@ struct Attached {
   }
 };
 
+/// E(q) v.
+template <class S>
+Positions<S, 2> along(const Positions<S, 2>&, const Velocities<S, 2>& v) {
+  return v;
+}
+template <class S>
+Positions<S, 3> along(const Positions<S, 3>& q, const Velocities<S, 3>& v) {
+  const S w = q[3], x = q[4], y = q[5], z = q[6], a = v[3], b = v[4], c = v[5];
+  Positions<S, 3> rates;
+  rates << v[0], v[1], v[2], 0.5 * (-x * a - y * b - z * c), 0.5 * (w * a + y * c - z * b), 0.5 * (w * b + z * a - x * c),
+      0.5 * (w * c + x * b - y * a);
+  return rates;
+}
+
 /// qdot = E(q) v. In space the quaternion's norm is drawn back to 1.
 template <class S>
-Positions<S, 2> position_rates(const Positions<S, 2>&, const Velocities<S, 2>& v) {
-  return v;
+Positions<S, 2> position_rates(const Positions<S, 2>& q, const Velocities<S, 2>& v) {
+  return along(q, v);
 }
 template <class S>
 Positions<S, 3> position_rates(const Positions<S, 3>& q, const Velocities<S, 3>& v) {
   constexpr double kNormRate = 10;  // 1/s
-  const S w = q[3], x = q[4], y = q[5], z = q[6], a = v[3], b = v[4], c = v[5];
-  const S pull = kNormRate * (S(1) - w * w - x * x - y * y - z * z);
-  Positions<S, 3> rates;
-  rates << v[0], v[1], v[2], 0.5 * (-x * a - y * b - z * c) + pull * w, 0.5 * (w * a + y * c - z * b) + pull * x,
-      0.5 * (w * b + z * a - x * c) + pull * y, 0.5 * (w * c + x * b - y * a) + pull * z;
+  const S pull = kNormRate * (S(1) - q[3] * q[3] - q[4] * q[4] - q[5] * q[5] - q[6] * q[6]);
+  Positions<S, 3> rates = along(q, v);
+  for (int i = 3; i < 7; ++i) rates[i] += pull * q[i];
   return rates;
 }
 

@@ -44,6 +44,9 @@ struct Convex {
 
 enum class ConstraintKind { joint, contact };
 
+/// What keeps a joint closed: Baumgarte's terms in its second derivative, or its equation and that of its rate themselves (index 2).
+enum class Stabilisation { baumgarte, gear_gupta_leimkuhler };
+
 /// One multiplier: a joint's equation, or a contact between one point (or ball) of body A and one convex shape of body B.
 template <int D>
 struct Constraint {
@@ -55,7 +58,7 @@ struct Constraint {
   double radius_a = 0;  // m: of the ball that A is
   double radius = 0;    // m: of both together
 
-  Law law;                          // of the contact in scene time: alpha
+  Law law;                          // of the contact in scene time: alpha; of a joint: Baumgarte's terms, or 0 where it is of index 2
   bool is_two_scale = true;         // collisions in a fast phase of their own
   double restitution = 1;           // of a collision, in [0, 1]
   double contact_time = 1e-3;       // s, of a collision: how long its fast phase lasts
@@ -63,8 +66,10 @@ struct Constraint {
   double rest_acceleration = 1e-2;  // m/s^2: of a one-law contact, with rest_speed
   double friction = 0;              // Coulomb's mu
   double friction_speed = 1e-3;     // m/s: mu tanh(v_t / friction_speed)
+  Stabilisation stabilisation = Stabilisation::baumgarte;
 
   bool is_joint() const { return kind == ConstraintKind::joint; }
+  bool is_index_2() const { return stabilisation == Stabilisation::gear_gupta_leimkuhler; }
 };
 
 enum class ForceKind { spring, torsion, applied, drag, expression };

@@ -1,13 +1,14 @@
 // A scene as a TOML file, and the scenes that come with tenon.
 //
 //     [parameters]  name = value                     set by --set NAME=VALUE; every number below may be text: an expression in these names
-//     [simulation]  space, gravity, duration, output_step, rtol, atol, integrator, impact_law, audit
+//     [simulation]  space, gravity, duration, output_step, rtol, atol, integrator, impact_law, audit,
+//                   stabilisation = "baumgarte" | "gear-gupta-leimkuhler"               of joints
 //     [[body]]      name, kind = "line" | "point" | "rigid", mass, inertia, position, angle (planar) or quaternion, velocity, omega
 //     [[shape]]     name, body = "world", type = "point" | "disc" | "half-plane" | "segment" | "capsule" | "polygon" | "box" (in space:
 //     "sphere", "half-space"),
 //                   at, radius, point, normal, from, to, vertices, size, angle           in the body's own axes
 //     [[joint]]     name, type = "revolute" | "distance" | "rope" | "slide" | "angle" | "weld" | "guide", between, at, from, to, length,
-//     axis, lock, pole,
+//     axis, lock, pole or stabilisation,
 //                   amplitude, frequency, phase, and a rope's contact keys                places in world axes, at the start
 //     [[contact]]   name, between = [shape or body, shape or body], restitution and contact_time or collision = [beta0, beta1], alpha =
 //     [a0, a1, a3],

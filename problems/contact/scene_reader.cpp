@@ -17,7 +17,7 @@ constexpr double kOpenJoint = 1e-6;  // m or rad: a joint further apart cannot b
 constexpr double kDefaultPole = 5;   // 1/s: of a contact's law after its collision, and of joints
 
 const std::vector<std::string> kSimulationKeys{"space", "gravity",    "duration",   "output_step", "rtol",
-                                               "atol",  "integrator", "impact_law", "audit"};
+                                               "atol",  "integrator", "impact_law", "audit",       "stabilisation"};
 const std::vector<std::string> kBodyKeys{"count",    "name",  "kind",       "mass",     "inertia",
                                          "position", "angle", "quaternion", "velocity", "omega"};
 const std::vector<std::string> kShapeKeys{"count",  "name", "body", "type",     "at",   "radius", "point",
@@ -46,6 +46,14 @@ ImpactLaw impact_law_of(const toml_file::Table& table, const std::string& name) 
   reject_name(table, "impact_law", "impact law", name, names);
 }
 
+Stabilisation stabilisation_of(const toml_file::Table& table, const std::string& name) {
+  static const std::vector<std::string> names{"baumgarte", "gear-gupta-leimkuhler"};
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (name == names[k]) return static_cast<Stabilisation>(k);
+  }
+  reject_name(table, "stabilisation", "stabilisation", name, names);
+}
+
 }  // namespace
 
 template <int D>
@@ -53,6 +61,7 @@ Scene<D> SceneReader<D>::read() {
   if (const auto simulation = root_.table("simulation", kSimulationKeys)) {
     scene_.gravity = point(*simulation, "gravity", scene_.gravity);
     if (simulation->has("impact_law")) scene_.impact_law = impact_law_of(*simulation, values_.text(*simulation, "impact_law"));
+    if (simulation->has("stabilisation")) stabilisation_ = stabilisation_of(*simulation, values_.text(*simulation, "stabilisation"));
     scene_.with_audit = simulation->flag("audit", true);
   }
   const auto each = [&](const std::string& key, const std::vector<std::string>& known, auto reader) {
@@ -69,7 +78,8 @@ Scene<D> SceneReader<D>::read() {
   if (scene_.bodies.empty()) throw InputError(root_.position(), "a scene without bodies", "[[body]]");
   each("shape", kShapeKeys, &SceneReader::read_shape);
   each("joint",
-       with({"count", "name", "type", "between", "at", "from", "to", "length", "axis", "lock", "pole", "amplitude", "frequency", "phase"},
+       with({"count", "name", "type", "between", "at", "from", "to", "length", "axis", "lock", "pole", "stabilisation", "amplitude",
+             "frequency", "phase"},
             kLawKeys),
        &SceneReader::read_joint);
   each("contact", with({"count", "name", "between"}, kLawKeys), &SceneReader::read_contact);
@@ -236,7 +246,12 @@ Constraint<D>& SceneReader<D>::add_joint_row(const Table& table, const std::stri
   c.gap.kind = kind;
   c.gap.a = place_in(a, at_a);
   c.gap.b = place_in(b, at_b);
-  c.law = Law::critical(table.has("pole") ? positive(table, "pole") : kDefaultPole);
+  c.stabilisation = table.has("stabilisation") ? stabilisation_of(table, values_.text(table, "stabilisation"))
+                    : table.has("pole")        ? Stabilisation::baumgarte
+                                               : stabilisation_;
+  if (c.is_index_2() && table.has("pole"))
+    throw InputError(table.position("pole"), "a joint of index 2 has no pole", "stabilisation = \"baumgarte\"");
+  if (!c.is_index_2()) c.law = Law::critical(table.has("pole") ? positive(table, "pole") : kDefaultPole);
   scene_.constraints.push_back(c);
   places_.push_back(table.position());
   return scene_.constraints.back();
@@ -262,7 +277,10 @@ void SceneReader<D>::read_joint(const Table& table) {
     if (!(c.gap.offset > 0) || !((from - to).norm() > 0))
       throw InputError(table.position(), "both ends are at one place", "ends that are apart");
     if (type == "rope") {
+      if (table.has("stabilisation"))
+        throw InputError(table.position("stabilisation"), "a rope is a contact, its law keeps it", "alpha = [alpha0, alpha1, alpha3]");
       c.kind = ConstraintKind::contact;
+      c.stabilisation = Stabilisation::baumgarte;
       c.gap.sign = -1;
       read_law(table, c);
     }

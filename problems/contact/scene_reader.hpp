@@ -50,6 +50,7 @@ class SceneReader {
   Scene<D> scene_;
   std::vector<Shape<D>> shapes_;
   std::vector<InputPosition> places_;  // of each constraint
+  Stabilisation stabilisation_ = Stabilisation::baumgarte;  // of joints that do not say their own
 };
 
 extern template class SceneReader<2>;

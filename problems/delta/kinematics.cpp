@@ -118,24 +118,6 @@ MotionBias motion_bias(const Robot& robot, const Configuration& at, const Motion
   return out;
 }
 
-Inverse inverse_kinematics(const Robot& robot, const Vector3& z) {
-  const double l1 = robot.proximal_length, l2 = robot.distal_length;
-  Inverse out;
-  for (int i = 0; i < kArms; ++i) {
-    const Vector3 w = to_arm(i, z) - Vector3(0, robot.radial_offset(), 0);
-    // |w - l1 e|^2 = l2^2:  r cos(q1 - atan2(w_z, w_y)) = s                                                                       (1.5)
-    const double s = (w.squaredNorm() + l1 * l1 - l2 * l2) / (2 * l1), r = std::hypot(w[1], w[2]);
-    if (!(std::abs(s) <= r)) {
-      out.unreachable_arm = i;
-      return out;
-    }
-    const double q1 = std::atan2(w[2], w[1]) - std::acos(r == 0 ? 0 : s / r);
-    const Vector3 d = (w - l1 * Vector3(0, std::cos(q1), std::sin(q1))) / l2;
-    out.q.segment<3>(3 * i) << std::remainder(q1, 2 * std::numbers::pi), std::atan2(std::hypot(d[0], d[2]), d[1]), std::atan2(d[0], d[2]);
-  }
-  return out;
-}
-
 namespace {
 
 /// The distal angles that join an elbow to the wrist.
@@ -149,6 +131,30 @@ inline void aim_distal_link(const Robot& robot, int i, const Vector3& wrist, Arm
 }
 
 }  // namespace
+
+int place_wrist(const Robot& robot, const Vector3& z, Configuration& at) {
+  const double l1 = robot.proximal_length, l2 = robot.distal_length;
+  for (int i = 0; i < kArms; ++i) {
+    const Vector3 w = to_arm(i, z) - Vector3(0, robot.radial_offset(), 0);
+    // |w - l1 e|^2 = l2^2:  w_y c1 + w_z s1 = s, of whose two solutions the elbow is the outer one                                (1.5)
+    const double s = (w.squaredNorm() + l1 * l1 - l2 * l2) / (2 * l1), rr = w[1] * w[1] + w[2] * w[2], height_2 = rr - s * s;
+    if (!(height_2 >= 0)) return i;
+    ArmConfiguration& arm = at.arm[std::size_t(i)];
+    const double height = std::sqrt(height_2), inverse = rr > 0 ? 1 / rr : 0;
+    arm.c1 = (w[1] * s + w[2] * height) * inverse;
+    arm.s1 = rr > 0 ? (w[2] * s - w[1] * height) * inverse : -1;
+    aim_distal_link(robot, i, z, arm);
+  }
+  return -1;
+}
+
+Inverse inverse_kinematics(const Robot& robot, const Vector3& z) {
+  Inverse out;
+  Configuration at;
+  out.unreachable_arm = place_wrist(robot, z, at);
+  if (out.ok()) out.q = angles(at);
+  return out;
+}
 
 Forward forward_kinematics(const Robot& robot, const Vector3& y) {
   Forward out;

@@ -21,8 +21,11 @@ struct Inverse {
   bool ok() const { return unreachable_arm < 0; }
 };
 
-/// The angles that bring the wrist to z (m), elbows out; where an arm does not reach, the first such is named and q is not all set.
+/// The angles that bring the wrist to z (m), elbows out; where an arm does not reach, the first such is named and q is not set.
 Inverse inverse_kinematics(const Robot& robot, const Vector3& z);
+
+/// The same without evaluating an angle; returns the first arm, from 0, that does not reach z, or -1.
+int place_wrist(const Robot& robot, const Vector3& z, Configuration& at);
 
 enum class ForwardStatus {
   solved,

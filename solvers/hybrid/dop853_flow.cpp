@@ -54,6 +54,7 @@ class Dop853Flow final : public Flow {
       if (error <= 1) {
         end_ = is_last ? t_limit : begin_ + h;
         f_ = stages_.col(kStages);
+        if (dae_.has_manifold(at_.mode) && !(project(end_, x_next_) && evaluate(end_, x_next_, f_, at_.y))) return Step::failed;
         const double factor = std::clamp(kSafety * std::pow(std::max(error, 1e-12), -1.0 / 8), kLeastFactor, kMostFactor);
         if (h >= 0.5 * h_ || factor < 1) h_ = h * factor;
         is_extended_ = false;
@@ -66,7 +67,9 @@ class Dop853Flow final : public Flow {
     return Step::collapsed;
   }
 
-  bool interpolate(double t, DaeState& state) override { return interpolate_state(t, state) && evaluate(t, state.x, state.xdot, state.y); }
+  bool interpolate(double t, DaeState& state) override {
+    return interpolate_state(t, state) && project(t, state.x) && evaluate(t, state.x, state.xdot, state.y);
+  }
 
   bool interpolate_state(double t, DaeState& state) override {
     state.t = t;
@@ -111,6 +114,8 @@ class Dop853Flow final : public Flow {
     y = at_.y;
     return true;
   }
+
+  bool project(double t, VectorRef x) { return !dae_.has_manifold(at_.mode) || dae_.project(at_.mode, t, x, workspace_); }
 
   /// The derivative of a stage into its column.
   bool evaluate_stage(int i, double t, ConstVectorRef x) { return evaluate(t, x, stages_.col(i), at_.y); }

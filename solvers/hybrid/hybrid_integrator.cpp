@@ -70,8 +70,7 @@ IntegrationResult HybridIntegrator::advance(DaeState& state, double t_end) {
           fail(IntegrationStatus::step_collapse, state, "the step collapses");
           return finish();
         case Flow::Step::failed:
-          fail(IntegrationStatus::no_consistent_state, state,
-               "no consistent multipliers; the system is " + newton_.diagnose(state, workspace_).text());
+          fail(IntegrationStatus::no_consistent_state, state, why_inconsistent(state));
           return finish();
       }
       Crossing crossing;
@@ -102,10 +101,10 @@ bool HybridIntegrator::is_where_we_left(const DaeState& state) const {
 /// Consistent, and no level asks for another mode.
 bool HybridIntegrator::settle(DaeState& state, std::span<const int> fired) {
   for (int k = 0; k < options_.max_events_at_once; ++k) {
-    if (!make_consistent(dae_, newton_, state, workspace_)) {
-      return fail(IntegrationStatus::no_consistent_state, state,
-                  "no consistent multipliers; the system is " + newton_.diagnose(state, workspace_).text());
-    }
+    if (dae_.has_manifold(state.mode) && !dae_.project(state.mode, state.t, state.x, workspace_))
+      return fail(IntegrationStatus::no_consistent_state, state, "the position constraints cannot be closed");
+    if (!make_consistent(dae_, newton_, state, workspace_))
+      return fail(IntegrationStatus::no_consistent_state, state, why_inconsistent(state));
     const Transition transition = dae_.transition(
         state, fired, workspace_, options_.on_event ? options_.on_event : [](const DaeEvent&) {});
     if (!transition.failure.empty()) return fail(IntegrationStatus::transition_failed, state, transition.failure);
@@ -238,6 +237,11 @@ bool HybridIntegrator::emit(const DaeState& state) {
   if (!options_.on_output || options_.on_output(state)) return true;
   result_.status = IntegrationStatus::stopped;
   return false;
+}
+
+std::string HybridIntegrator::why_inconsistent(const DaeState& state) {
+  const std::string what = "no consistent multipliers";
+  return dae_.has_manifold(state.mode) ? what : what + "; the system is " + newton_.diagnose(state, workspace_).text();
 }
 
 bool HybridIntegrator::fail(IntegrationStatus status, const DaeState& state, const std::string& why) {

@@ -37,6 +37,7 @@ class HybridIntegrator final : public Integrator {
   bool look(double t);
   double guard_at(double t, int guard);
   void evaluate_guards(const DaeState& state, Vector& values);
+  std::string why_inconsistent(const DaeState& state);
   bool fail(IntegrationStatus status, const DaeState& state, const std::string& why);
 
   const Dae& dae_;

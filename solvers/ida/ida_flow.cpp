@@ -18,8 +18,9 @@ namespace {
 constexpr int kAlwaysDense = 30;      // unknowns up to which the dense LU is the faster one
 constexpr double kSparseFill = 0.25;  // of the pattern, above which it is as well
 
-constexpr double kFirstStep = 0.25;  // of a restart, in parts of the longest step since the one before
-constexpr int kRecoverable = 1;      // IDA tries a smaller step
+constexpr double kFirstStep = 0.25;          // of a restart, in parts of the longest step since the one before
+constexpr double kIndex2Convergence = 0.01;  // of Newton's method against the step's error; IDA's own is 0.33
+constexpr int kRecoverable = 1;              // IDA tries a smaller step
 
 void check(int flag, const char* call) {
   if (flag < 0) throw std::runtime_error(std::string("IDA: ") + call + " fails with " + std::to_string(flag));
@@ -105,15 +106,19 @@ class IdaFlow final : public Flow {
     state.y = view(inside_).tail(ny_);
     if (IDAGetDky(memory_.get(), t, 1, inside_.get()) != IDA_SUCCESS) return false;
     state.xdot = view(inside_).head(nx_);
-    return true;
+    return !has_manifold() || follow(state);
   }
 
   bool interpolate_state(double t, DaeState& state) override { return interpolate(t, state); }
 
-  /// xdot and y follow from x; the interpolant's own are less accurate.
-  bool land(double t, DaeState& state) override { return interpolate(t, state) && make_consistent(dae_, newton_, state, workspace_); }
+  bool land(double t, DaeState& state) override { return interpolate(t, state) && follow(state); }
 
  private:
+  bool has_manifold() const { return dae_.has_manifold(at_.mode); }
+
+  /// xdot and y follow from x; the interpolant's own are less accurate.
+  bool follow(DaeState& state) { return make_consistent(dae_, newton_, state, workspace_); }
+
   static Eigen::Map<Vector> view(const NVector& v) { return {N_VGetArrayPointer(v.get()), N_VGetLength(v.get())}; }
   Eigen::Map<Vector> view(N_Vector v) const { return {N_VGetArrayPointer(v), nx_ + ny_}; }
 
@@ -145,6 +150,11 @@ class IdaFlow final : public Flow {
               ida, [](int, const char*, const char*, char*, void*) {}, nullptr),
           "IDASetErrHandlerFn");
     view(tolerance_).setConstant(options_.atol);
+    if (has_manifold()) {
+      // rounding in x comes into multipliers of index 2 divided by the step: Newton's method is judged by x, and more strictly
+      view(tolerance_).tail(ny_).setConstant(std::sqrt(options_.atol));
+      check(IDASetNonlinConvCoef(ida, kIndex2Convergence), "IDASetNonlinConvCoef");
+    }
     check(IDASVtolerances(ida, options_.rtol, tolerance_.get()), "IDASVtolerances");
     view(kind_) << Vector::Ones(nx_), Vector::Zero(ny_);
     check(IDASetId(ida, kind_.get()), "IDASetId");

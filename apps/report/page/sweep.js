@@ -1,20 +1,18 @@
-// A Monte Carlo sweep: how often it succeeded (with Wilson's interval), where (a map over two parameters), and how each quantity is spread.
-//
-//     (p + z^2/2n +- z sqrt(p(1-p)/n + z^2/4n^2)) / (1 + z^2/n)        z = 1.96 for 95 %
+// A Monte Carlo sweep: how often it succeeded, where (a map over two quantities), and how each quantity is spread; of the controller, and of
+// each baseline that ran in the same worlds (its columns are NAME.success and so on).
 import {dataTable} from "./data_table.js";
 import {download, element, whenSeen} from "./element.js";
 import {number} from "./format.js";
-import {histogram} from "./histogram.js";
+import {bins, histogram} from "./histogram.js";
+import {successInterval} from "./success_interval.js";
 import {Table} from "./table.js";
 import {color, onThemeChange} from "./theme.js";
 
 const kMargin = {left: 74, right: 28, top: 10, bottom: 40};
 const kCells = 12;  // of the map's rate of success, along each axis
 
-export function wilson(successes, n, z = 1.96) {
-  const p = successes / n, middle = p + (z * z) / (2 * n), half = z * Math.sqrt((p * (1 - p)) / n + (z * z) / (4 * n * n));
-  return [middle - half, middle + half].map((bound) => bound / (1 + (z * z) / n));
-}
+const kController = "mpc";
+const percent = (share) => `${(100 * share).toFixed(1)} %`;
 
 function limits(values) {
   let low = Infinity, high = -Infinity;
@@ -27,35 +25,70 @@ export class Sweep {
     this.table = new Table(part);
     this.plots = [];
     this.title = "Sweep";
-    this.success = this.table.numbers("success");
-    this.quantities = this.table.names.filter((name) => !["success", "seed", "sample"].includes(name) && !this.table.isText(name));
-    const n = this.success.length, successes = this.success.reduce((sum, v) => sum + (v > 0), 0), [low, high] = wilson(successes, n);
-    const percent = (share) => `${(100 * share).toFixed(1)} %`;
-    const chooser = (label, k) => {
-      const select = element("select", {"aria-label": label, onchange: () => this.draw()}, ...this.quantities.map((name) => element("option", {}, name)));
-      select.selectedIndex = Math.min(k, this.quantities.length - 1);
-      return select;
-    };
-    this.across = chooser("Across", 0);
-    this.upward = chooser("Upward", 1);
-    this.canvas = element("canvas", {class: "success-map", role: "img", "aria-label": `Successes and failures over two quantities; ${successes} of ${n} succeeded`});
+    const {names} = this.table, baselines = names.filter((name) => name.endsWith(".success")).map((name) => name.slice(0, -".success".length));
+    const select = (label, options, change) => element("select", {"aria-label": label, onchange: change}, ...options.map((name) => element("option", {}, name)));
+    this.quantities = names.filter((name) => !name.includes(".") && !["success", "seed", "sample"].includes(name) && !this.table.isText(name));
+    this.contestants = [kController, ...baselines].map((name) => this.figures(name));
+    this.contestant = select("Controller", [kController, ...baselines], () => this.show());
+    this.across = select("Across", this.quantities, () => this.draw());
+    this.upward = select("Upward", this.quantities, () => this.draw());
+    this.upward.selectedIndex = Math.min(1, this.quantities.length - 1);
+    this.canvas = element("canvas", {class: "success-map", role: "img"});
+    this.histograms = element("div", {class: "histograms"});
+    this.failed = element("details");
     const csv = element("button", {type: "button", "aria-label": "Download as CSV", onclick: () => download(part.name, this.table.csv())}, "CSV");
-    const failed = (name) => Array.from(this.table.numbers(name)).filter((v, k) => !(this.success[k] > 0) && Number.isFinite(v));
+    const [mpc] = this.contestants;
     this.node = element("section", {id: "part-" + index, "aria-label": this.title}, element("h2", {}, this.title),
-                        element("p", {class: "facts"}, `${successes} of ${n} succeeded: ${percent(successes / n)}, 95 % interval ${percent(low)} to ${percent(high)}`, csv),
-                        element("p", {class: "facts"}, "across ", this.across, " upward ", this.upward), this.canvas,
+                        element("p", {class: "facts"}, `${mpc.successes} of ${mpc.n} succeeded: ${percent(mpc.successes / mpc.n)}, 95 % interval ${percent(mpc.interval[0])} to ${percent(mpc.interval[1])}`, csv),
+                        ...(baselines.length > 0 ? [this.comparison()] : []),
+                        element("p", {class: "facts"}, ...(baselines.length > 0 ? ["of ", this.contestant] : []), " across ", this.across, " upward ", this.upward), this.canvas,
                         element("p", {class: "keys"}, element("span", {class: "key"}, element("i", {style: "background: var(--good)"}), "succeeded"),
                                 element("span", {class: "key"}, element("i", {style: "background: var(--bad)"}), "failed"), "tint: rate of success in a cell"),
-                        element("div", {class: "histograms"}, ...this.quantities.map((name) => histogram(name, this.table.numbers(name), failed(name)))),
-                        element("details", {}, element("summary", {}, `Failures (${n - successes})`), this.failures()));
+                        this.histograms, this.failed);
+    this.show();
     whenSeen(this.canvas, () => new ResizeObserver(() => this.draw()).observe(this.canvas));
     onThemeChange(() => this.draw());
   }
 
-  failures() {
-    const rows = Array.from({length: this.table.kept}, (_, k) => k).filter((k) => !(this.success[k] > 0));
-    return dataTable(this.table.names.map((name) => [name, name.replaceAll("_", " ")]),
-                     rows.map((k) => Object.fromEntries(this.table.names.map((name) => [name, this.table.cell(name, k)]))), {label: "Failures"});
+  /// The column of a quantity as a contestant has it: its own, or what was drawn for all.
+  column(name, contestant = this.contestant.value) {
+    const own = `${contestant}.${name}`;
+    return this.table.has(own) ? own : name;
+  }
+
+  figures(name) {
+    const success = this.table.numbers(this.column("success", name)), successes = success.reduce((sum, v) => sum + (v > 0), 0), n = success.length;
+    return {name, success, successes, n, interval: successInterval(successes, n)};
+  }
+
+  /// One line for each contestant: the quantities that a baseline has of its own are what came of the runs.
+  comparison() {
+    const baseline = this.contestants[1].name, outcomes = this.quantities.filter((name) => this.table.has(`${baseline}.${name}`));
+    const lines = this.contestants.map(({name, successes, n, interval}) => {
+      const line = {name, rate: `${successes} of ${n}`, interval: `${percent(interval[0])} to ${percent(interval[1])}`};
+      for (const quantity of outcomes) {
+        const {median, p95} = bins(this.table.numbers(this.column(quantity, name)));
+        line[quantity] = `${number(median, 3)} / ${number(p95, 3)}`;
+      }
+      return line;
+    });
+    return dataTable([["name", "controller"], ["rate", "succeeded"], ["interval", "95 % interval"],
+                      ...outcomes.map((name) => [name, name.replaceAll("_", " ") + " (median / 95 % below)"])], lines, {label: "Controllers in the same worlds"});
+  }
+
+  /// What depends on whose runs are looked at.
+  show() {
+    const {success, successes, n} = this.contestants[this.contestant.selectedIndex];
+    this.success = success;
+    this.canvas.setAttribute("aria-label", `Successes and failures over two quantities; ${successes} of ${n} succeeded`);
+    const failed = (values) => Array.from(values).filter((v, k) => !(success[k] > 0) && Number.isFinite(v));
+    const spread = this.quantities.map((name) => [name, this.table.numbers(this.column(name))]).filter(([, values]) => values.some(Number.isFinite));
+    this.histograms.replaceChildren(...spread.map(([name, values]) => histogram(name, values, failed(values))));
+    const rows = Array.from({length: this.table.kept}, (_, k) => k).filter((k) => !(success[k] > 0));
+    this.failed.replaceChildren(element("summary", {}, `Failures (${n - successes})`),
+                                dataTable(this.table.names.map((name) => [name, name.replaceAll("_", " ")]),
+                                          rows.map((k) => Object.fromEntries(this.table.names.map((name) => [name, this.table.cell(name, k)]))), {label: "Failures"}));
+    this.draw();
   }
 
   draw() {
@@ -66,7 +99,7 @@ export class Sweep {
     const context = canvas.getContext("2d");
     context.scale(ratio, ratio);
     const names = [this.across, this.upward].map((select) => this.quantities[select.selectedIndex]);
-    const [x, y] = names.map((name) => this.table.numbers(name)), [x0, x1] = limits(x), [y0, y1] = limits(y);
+    const [x, y] = names.map((name) => this.table.numbers(this.column(name))), [x0, x1] = limits(x), [y0, y1] = limits(y);
     const inner = {width: width - kMargin.left - kMargin.right, height: height - kMargin.top - kMargin.bottom};
     const shareX = (v) => (v - x0) / (x1 - x0), shareY = (v) => (v - y0) / (y1 - y0);
     const toX = (share) => kMargin.left + share * inner.width, toY = (share) => kMargin.top + (1 - share) * inner.height;

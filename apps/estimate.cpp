@@ -1,0 +1,140 @@
+// tenon estimate SCENE --measurements FILE.csv: what a scene's estimator makes of a record, row by row, with how sure it is.
+//
+// The record has t and the scene's measurements and commands by name, as `tenon mpc SCENE --output FILE.csv` writes it; what else stands in
+// it, the truth included, is not read.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "tenon/apps/json.hpp"
+#include "tenon/apps/make_report.hpp"
+#include "tenon/apps/table.hpp"
+#include "tenon/apps/verb.hpp"
+#include "tenon/core/csv.hpp"
+#include "tenon/problems/tasks.hpp"
+
+namespace tenon {
+
+namespace {
+
+constexpr double kObserved = 0.7;  // of the prior's standard deviation: where more than this is left, little was learnt
+
+std::vector<std::string> names_of(int count, const auto& name) {
+  std::vector<std::string> names;
+  for (int i = 0; i < count; ++i) names.push_back(name(i));
+  return names;
+}
+
+void check_clock(const CsvTable& record) {
+  const std::vector<double>& t = record["t"];
+  for (std::size_t k = 1; k < t.size(); ++k) {
+    if (!(t[k] > t[k - 1])) throw InputError({record.file, record.lines[k], 1}, "the time does not go on", "a time that rises from row to row");
+  }
+}
+
+/// Some columns of one row.
+class Cells {
+ public:
+  Cells(const CsvTable& record, const std::vector<std::string>& names) : values_(static_cast<int>(names.size())) {
+    for (const std::string& name : names) columns_.push_back(&record[name]);
+  }
+  const Vector& at(std::size_t row) {
+    for (std::size_t c = 0; c < columns_.size(); ++c) values_[static_cast<int>(c)] = (*columns_[c])[row];
+    return values_;
+  }
+
+ private:
+  std::vector<const std::vector<double>*> columns_;
+  Vector values_;
+};
+
+Vector deviations(const Estimator& estimator) {
+  Eigen::MatrixXd covariance(estimator.num_estimates(), estimator.num_estimates());
+  estimator.covariance(covariance);
+  return covariance.diagonal().cwiseSqrt();
+}
+
+struct Belief {
+  std::string name;
+  double mean, deviation, prior_deviation;
+
+  bool is_observed() const { return deviation <= kObserved * prior_deviation; }
+};
+
+Json json_of(const std::vector<Belief>& beliefs, const std::string& scene, int rows) {
+  Json estimates = Json::array(), unobserved = Json::array();
+  for (const Belief& b : beliefs) {
+    estimates.push(Json::object().set("name", b.name).set("mean", b.mean).set("sd", b.deviation).set("prior_sd", b.prior_deviation));
+    if (!b.is_observed()) unobserved.push(b.name);
+  }
+  return Json::object().set("schema", 1).set("scene", scene).set("rows", rows).set("estimates", estimates).set("not_observed", unobserved);
+}
+
+std::string text_of(const std::vector<Belief>& beliefs, const std::string& scene, int rows) {
+  Table table({"estimate", "mean", "sd", "sd before", ""});
+  for (const Belief& b : beliefs) {
+    table.add({b.name, fmt::format("{:.6g}", b.mean), fmt::format("{:.3g}", b.deviation), fmt::format("{:.3g}", b.prior_deviation),
+               b.is_observed() ? "" : "not observed: this record says little about it"});
+  }
+  return fmt::format("{}: {} rows\n{}", scene, rows, table.text());
+}
+
+}  // namespace
+
+int run_estimate(const Arguments& arguments) {
+  const std::string& scene = arguments.names.front();
+  if (arguments.measurements.empty()) throw std::invalid_argument("estimate: no record (expected --measurements FILE.csv)");
+  const ControlTask task = make_task(scene, arguments.set);
+  if (!task.estimator) throw std::invalid_argument(scene + ": has nothing to estimate, its measurements say it all");
+  Estimator& estimator = *task.estimator;
+  const std::vector<std::string> measured = names_of(task.plant->num_measurements(), [&](int i) { return task.plant->measurement_name(i); });
+  const std::vector<std::string> commanded = names_of(task.plant->num_commands(), [&](int i) { return task.plant->command_name(i); });
+  const std::vector<std::string> estimated = names_of(estimator.num_estimates(), [&](int i) { return estimator.estimate_name(i); });
+
+  std::vector<std::string> wanted{"t"};
+  wanted.insert(wanted.end(), measured.begin(), measured.end());
+  wanted.insert(wanted.end(), commanded.begin(), commanded.end());
+  const CsvTable record = read_csv(arguments.measurements, {.required = wanted, .optional = {}});
+  check_clock(record);
+  check_report(arguments);
+
+  const std::string output = !arguments.output.empty() ? arguments.output : record_beside_report(arguments, ".csv", arguments.json ? "" : "-");
+  std::optional<CsvWriter> csv;
+  if (!output.empty()) {
+    std::vector<std::string> columns{"t"};
+    for (const std::string& name : estimated) columns.push_back(name);
+    for (const std::string& name : estimated) columns.push_back("sd_" + name);
+    csv.emplace(output, columns);
+  }
+
+  Cells measurements(record, measured), commands(record, commanded);
+  Vector mean(estimator.num_estimates()), held = Vector::Zero(static_cast<int>(commanded.size()));
+  estimator.reset();
+  const Vector prior = deviations(estimator);
+  for (std::size_t k = 0; k < record.lines.size(); ++k) {
+    estimator.update(record["t"][k], measurements.at(k), held);  // a row's command holds from there on
+    held = commands.at(k);
+    if (!csv) continue;
+    estimator.mean(mean);
+    *csv << record["t"][k];
+    for (const double value : mean) *csv << value;
+    for (const double value : deviations(estimator)) *csv << value;
+    csv->end_row();
+  }
+  if (csv) csv->finish();
+  make_report(arguments, {output});
+
+  estimator.mean(mean);
+  const Vector deviation = deviations(estimator);
+  std::vector<Belief> beliefs;
+  for (int i = 0; i < mean.size(); ++i) beliefs.push_back({estimated[static_cast<std::size_t>(i)], mean[i], deviation[i], prior[i]});
+  if (arguments.json)
+    print(json_of(beliefs, scene, record.rows()));
+  else if (!arguments.quiet)
+    fmt::print(output == "-" ? stderr : stdout, "{}", text_of(beliefs, scene, record.rows()));
+  return kFinished;
+}
+
+}  // namespace tenon

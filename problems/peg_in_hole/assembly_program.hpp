@@ -1,0 +1,94 @@
+// Peg in hole over a receding horizon: where the peg goes next and what touches it, so that the reference of an impedance loop follows.
+//
+//     min  sum over intervals of  tracking + lateral error + spring force + rate of the reference + contact forces            (2.7)
+//     s.t. M v' = K (r - q) + D (r' - v) + sum_i grad h_i(q) lambda_i   by implicit Euler,   h_i >= 0,   lambda_i h_i <= eps,
+//          reference rates and spring forces bounded                                                                       peg_in_hole.md
+//
+// Decided are the velocity at an interval's end and the contact forces over it; the momentum balance then gives the reference, so that the
+// dynamics are explicit and every stage is a step of a Riccati recursion. Inside: mm, 100 mm/s, N. SI outside.
+#pragma once
+
+#include "tenon/core/horizon_program.hpp"
+#include "tenon/problems/peg_in_hole/geometry.hpp"
+#include "tenon/problems/peg_in_hole/impedance.hpp"
+
+namespace tenon::peg {
+
+struct AssemblyProblem {
+  std::string name = "peg-in-hole";
+  Geometry geometry;
+  Impedance impedance;
+  double interval = 0.02;        // s
+  int intervals = 15;            // N
+  double smoothing = 0.02;       // mm, delta of the gaps
+  double complementarity = 0.01; // N mm, eps
+  double largest_force = 60;     // N, of a contact
+  double largest_spring = 10.5;  // N, of the impedance, in x and z
+  double largest_rate = 40;      // mm/s, of the reference
+  double speed = 25;             // mm/s, downwards
+  double depth = 20.3;           // mm, aimed at
+  bool follow_hole = true;       // false: the peg is to stay where x and phi began, and contact must do the work
+  Vector3d pose{0, 5, 0};        // until something is observed
+  Vector3d hole{0, 0, 0};
+};
+
+class AssemblyProgram final : public HorizonProgram {
+ public:
+  using StageSizes = tenon::StageSizes<12, 9>;
+
+  /// Throws std::invalid_argument where there is no interval, or its length is not positive.
+  explicit AssemblyProgram(const AssemblyProblem& problem);
+
+  int num_measurements() const override;
+  int num_estimates() const override { return 3; }
+  int num_commands() const override;
+  double interval() const override { return problem_.interval; }
+
+  /// Measurements and estimates as in channels.hpp.
+  void observe(double t, ConstVectorRef measurements, ConstVectorRef estimates) override;
+  void commands(const Point& plan, double elapsed, VectorRef commands) const override;
+  std::string command_name(int i) const override;
+
+  int num_variables() const override { return kStage * problem_.intervals + kStates; }
+  int num_constraints() const override { return kRows * problem_.intervals; }
+  Stages stages() const override;
+  SparsePattern jacobian_pattern() const override;
+  SparsePattern hessian_pattern() const override;
+  void bounds(Bounds& bounds) const override;
+
+  /// The peg sweeps straight down at the speed asked for, through whatever is in its way.
+  void initial_point(VectorRef x) const override;
+  Workspace make_workspace() const override;
+  void prepare(ConstVectorRef x, Workspace& workspace) const override;
+  double objective(ConstVectorRef x, Workspace& workspace) const override;
+  void gradient(ConstVectorRef x, Workspace& workspace, VectorRef gradient) const override;
+  void constraints(ConstVectorRef x, Workspace& workspace, VectorRef values) const override;
+  void jacobian(ConstVectorRef x, Workspace& workspace, std::span<double> values) const override;
+  void hessian(ConstVectorRef x, double sigma, ConstVectorRef lambda, Workspace& workspace, std::span<double> values) const override;
+  std::string name() const override { return problem_.name; }
+  std::string variable_name(int i) const override;
+  std::string constraint_name(int j) const override;
+
+  const AssemblyProblem& problem() const { return problem_; }
+
+ private:
+  // of a stage: the pose q, its rate v, the spring r - q, the rate u of the reference in the interval before; then the rate w at the end of the
+  // interval and the contact forces
+  static constexpr int kPose = 0, kVelocity = 3, kSpring = 6, kRate = 9, kStates = 12, kNext = 12, kForces = 15, kStage = 21;
+  static constexpr int kGaps = 12, kProducts = 18, kRows = 24;
+
+  struct Contacts;
+  struct Interval;
+  double wanted_height(int k) const;
+
+  AssemblyProblem problem_;
+  Vector3d inertia_;        // m = M / dt, N for each 100 mm/s
+  Vector3d keep_, yield_;   // a and b of (2.3): what of a spring is left after an interval, and what a force adds
+  double step_;             // c, mm for each 100 mm/s
+  Vector3d pose_, velocity_, spring_, rate_, hole_, lateral_;
+};
+
+/// A single plan of 1.2 s into a hole that lies 0.9 mm and 1 degree beside the peg's path.
+AssemblyProblem single_plan();
+
+}  // namespace tenon::peg

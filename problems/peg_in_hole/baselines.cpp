@@ -1,0 +1,82 @@
+#include "tenon/problems/peg_in_hole/baselines.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tenon/problems/peg_in_hole/channels.hpp"
+
+namespace tenon::peg {
+
+namespace {
+
+constexpr double kDown = 20, kEnd = -20.3;       // mm/s, mm
+constexpr double kTilt = std::numbers::pi / 18;  // rad
+constexpr double kHook = 2.25;                   // mm: how far the tilted peg stands aside, so that its low corner is over the hole
+constexpr double kTurn = 0.6;                    // rad/s
+constexpr double kAside = 15, kLower = 15, kInsert = 30;  // mm/s
+constexpr double kTouch = 1;                     // N
+constexpr double kAdmittance = 20;               // mm/s for each N, of x; of phi in the ratio of the springs, so that both give way as fast
+
+/// Towards a goal, no faster than this, and not beyond it within the period.
+double towards(double from, double to, double speed, double period) {
+  return std::clamp((to - from) / period, -speed, speed);
+}
+
+}  // namespace
+
+ReferenceController::ReferenceController(const Geometry& geometry, const Impedance& impedance, const Vector3d& start, double period)
+    : geometry_(geometry), impedance_(impedance), start_(start), reference_(start), period_(period) {}
+
+int ReferenceController::num_measurements() const {
+  return kMeasurements;
+}
+int ReferenceController::num_commands() const {
+  return kCommands;
+}
+void ReferenceController::reset() {
+  reference_ = start_;
+}
+
+void ReferenceController::update(double t, ConstVectorRef measurements, VectorRef commands) {
+  const double lever = geometry_.lever;
+  const Vector3d force(measurements[kMeasuredForce], measurements[kMeasuredForce + 1], 1e3 / lever * measurements[kMeasuredForce + 2]);
+  const Vector3d along = rate(t, reference_, force);
+  commands.segment<3>(kReference) = to_si(reference_, lever);
+  commands.segment<3>(kReferenceRate) = to_si(along, lever);
+  commands.segment<3>(kStiffness) = stiffness_to_si(impedance_.stiffness, lever);
+  reference_ += period_ * along;
+}
+
+Vector3d StraightDown::rate(double, const Vector3d& reference, const Vector3d&) {
+  return {0, towards(reference[1], kEnd, kDown, period()), 0};
+}
+
+void TiltAndSlide::reset() {
+  ReferenceController::reset();
+  phase_ = Phase::lower;
+}
+
+Vector3d TiltAndSlide::rate(double, const Vector3d& reference, const Vector3d& force) {
+  const double lever = geometry_.lever, theta = reference[2] / lever;
+  if (phase_ == Phase::lower && theta > 0.99 * kTilt && force[1] > kTouch) phase_ = Phase::slide;
+  if (phase_ == Phase::slide && force[0] > kTouch) phase_ = Phase::upright;
+  if (phase_ == Phase::upright && theta <= 0) phase_ = Phase::insert;
+  const double give_x = kAdmittance * force[0], give_phi = kAdmittance * impedance_.stiffness[0] / impedance_.stiffness[2] * force[2];
+  switch (phase_) {
+    case Phase::lower: {
+      const double turn = towards(theta, kTilt, kTurn * 1.5, period());
+      return {towards(reference[0], kHook, kAside, period()), theta > 0.99 * kTilt ? -kLower : -kDown / 4, lever * turn};
+    }
+    case Phase::slide: return {-kAside, 0, 0};
+    case Phase::upright: {
+      // about the left corner: q = corner + R(theta) (w/2, 0)
+      const double turn = towards(theta, 0, kTurn, period()), half = geometry_.width / 2;
+      return {-half * std::sin(theta) * turn + 0.2 * give_x, half * std::cos(theta) * turn, lever * turn};
+    }
+    case Phase::insert: return {give_x, towards(reference[1], kEnd, kInsert, period()), give_phi};
+  }
+  return Vector3d::Zero();
+}
+
+}  // namespace tenon::peg
