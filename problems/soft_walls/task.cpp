@@ -57,6 +57,7 @@ Weights read_weights(const Table& root) {
 Scenery scenery_of(const Parameters& p) {
   constexpr double kCartHeight = 0.08, kThin = 0.012;
   Scenery scenery;
+  scenery.extent = 2.6 * p.wall;
   SceneryBody walls{.name = "walls"};
   for (const double side : {1.0, -1.0})
     walls.shapes.push_back(SceneryShape::half_space(Eigen::Vector3d(-side, 0, 0), Eigen::Vector3d(side * p.wall, 0, 0)).colored("ground"));

@@ -35,6 +35,7 @@ class PlanePlant final : public Plant {
   int num_verdicts() const override { return 8; }
   std::string verdict_name(int i) const override;
   void verdicts(VectorRef values) const override;
+  std::string severity() const override { return "peak_force"; }
   std::string measurement_name(int i) const override;
   std::string command_name(int) const override { return "w"; }
 
