@@ -28,7 +28,7 @@ DaeState Plan::at(std::size_t k, double tau) const {
   Vector value(n), derivative(n);
   interpolation_weights(abscissae_, tau, value, derivative);
   DaeState state;
-  state.t = interval.t + tau * interval.length;
+  state.t = tau == 1 && k + 1 < intervals_.size() ? intervals_[k + 1].t : interval.t + tau * interval.length;  // never back by rounding
   state.mode = modes_[static_cast<std::size_t>(interval.phase)];
   state.x = interval.x * value;
   state.xdot = interval.x * derivative / interval.length;
