@@ -39,7 +39,8 @@ DaeState Plan::at(std::size_t k, double tau) const {
 }
 
 DaeState Plan::at(double t) const {
-  const auto later = std::upper_bound(intervals_.begin(), intervals_.end(), t, [](double time, const PlanInterval& i) { return time < i.t; });
+  const auto later =
+      std::upper_bound(intervals_.begin(), intervals_.end(), t, [](double time, const PlanInterval& i) { return time < i.t; });
   const std::size_t k = later == intervals_.begin() ? 0 : static_cast<std::size_t>(later - intervals_.begin()) - 1;
   return at(k, std::clamp((t - intervals_[k].t) / intervals_[k].length, 0.0, 1.0));
 }
