@@ -16,7 +16,7 @@ constexpr double kHolding = 1e-3;  // of the hardest
 constexpr std::size_t kMost = 20;
 
 std::string place_text(const Obstacle& o) {
-  return fmt::format("in stage {}, at t = {:.6g} s: {:.6g}, in [{:.6g}, {:.6g}]", o.stage, o.t, o.limit.value, o.limit.lower,
+  return fmt::format("in stage {}, at t = {:.6g} s: {:.6g}, limits [{:.6g}, {:.6g}]", o.stage, o.t, o.limit.value, o.limit.lower,
                      o.limit.upper);
 }
 
