@@ -6,6 +6,7 @@
 //     floor, at y = 0:  v_y+ = -e v_y-,   v_x+ = v_x-                catch, at d = 0:  v+ = v_c (the cup is heavy)               (2)
 //
 // A cup pushes up and does not pull: lambda_y >= 0. The price of a rough catch is its impulse, squared.
+#include <cmath>
 #include <memory>
 #include <stdexcept>
 

@@ -4,6 +4,7 @@
 //
 // h' = p.v, h'' = v.v + p.v': linear in lambda with the factor -p.p/m, so that F can be solved for (xdot, lambda) wherever p is not 0.
 // The rod pulls with lambda l. [J. Baumgarte, Comp. Meth. Appl. Mech. Eng. 1 (1972) 1]
+#include <cmath>
 #include <memory>
 
 #include "tenon/core/automatic_dae.hpp"

@@ -1,6 +1,7 @@
 // cart-pole and pendulum as Ocps: a pole on a cart, swung up by a bounded force.
 //
 //     D(theta) = M + m sin^2,    a = (u + m l omega^2 sin + m g cos sin) / D,    alpha = -(a cos + g sin) / l              swing_up.md (1)
+#include <cmath>
 #include <memory>
 
 #include "tenon/core/automatic_dae.hpp"

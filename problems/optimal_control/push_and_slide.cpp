@@ -7,7 +7,6 @@
 //                                input    lambda = u_2, 0 <= lambda _|_ h >= 0            complementarity; baumgarte with h'' + 2 r h' + r^2 h
 //                                law      lambda = k d log(1 + exp(-h/d))                 a soft pad, compliant by nature
 #include <memory>
-#include <stdexcept>
 
 #include "tenon/core/automatic_dae.hpp"
 #include "tenon/core/automatic_function.hpp"
