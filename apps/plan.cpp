@@ -104,12 +104,13 @@ std::string text_of(const OcpScene& scene, const PlannerOutcome& outcome, const 
   line("duration", fmt::format("{:.6g} s", outcome.plan.duration()));
   for (const PhaseSummary& p : phases_of(scene, outcome.plan))
     line("phase", fmt::format("{}: {:.6g} to {:.6g} s, {} intervals of {} points", p.name, p.begin, p.end, p.intervals, scene.points));
-  line("mesh error", fmt::format("{:.2g} of a step at most, {:.2g} asked; {} refinements", outcome.error.worst, scene.tolerance, outcome.refinements));
+  line("mesh error",
+       fmt::format("{:.2g} of a step at most, {:.2g} asked; {} refinements", outcome.error.worst, scene.tolerance, outcome.refinements));
   Eigen::Index worst = 0;
   const double end = outcome.error.end.maxCoeff(&worst);
   line("at the end", fmt::format("{:.2g} in {}, open loop", end, scene.ocp.dae->state_name(static_cast<int>(worst))));
-  line("residual", fmt::format("stationarity {:.2e}, primal {:.2e}, complementarity {:.2e}", result.residual.stationarity, result.residual.primal,
-                               result.residual.complementarity));
+  line("residual", fmt::format("stationarity {:.2e}, primal {:.2e}, complementarity {:.2e}", result.residual.stationarity,
+                               result.residual.primal, result.residual.complementarity));
   if (!next_step(result.status).empty()) line("next", std::string(next_step(result.status)));
   return text;
 }
@@ -124,7 +125,8 @@ int run_plan(const Arguments& given) {
   const OcpScene scene = load_ocp_scene(arguments.names.front(), arguments.set);
   if (!arguments.output.empty()) check_output_path(arguments.output);
   const std::string solver = arguments.solver.value_or(default_solver());
-  PlannerOptions options{.points = scene.points, .tolerance = scene.tolerance, .refinements = scene.refinements, .solver = arguments.options()};
+  PlannerOptions options{
+      .points = scene.points, .tolerance = scene.tolerance, .refinements = scene.refinements, .solver = arguments.options()};
   Observers observers(arguments);
   options.solver.on_iteration = observers.callback();
   long solves = 0;

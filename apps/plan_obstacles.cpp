@@ -16,13 +16,17 @@ constexpr double kHolding = 1e-3;  // of the hardest
 constexpr std::size_t kMost = 20;
 
 std::string place_text(const Obstacle& o) {
-  return fmt::format("in stage {}, at t = {:.6g} s: {:.6g}, in [{:.6g}, {:.6g}]", o.stage, o.t, o.limit.value, o.limit.lower, o.limit.upper);
+  return fmt::format("in stage {}, at t = {:.6g} s: {:.6g}, limits [{:.6g}, {:.6g}]", o.stage, o.t, o.limit.value, o.limit.lower,
+                     o.limit.upper);
 }
 
 class Examination {
  public:
   explicit Examination(const PlannerOutcome& outcome)
-      : program_(*outcome.program), x_(outcome.point.x), here_(program_, x_), bounds_(program_.num_variables(), program_.num_constraints()) {
+      : program_(*outcome.program),
+        x_(outcome.point.x),
+        here_(program_, x_),
+        bounds_(program_.num_variables(), program_.num_constraints()) {
     program_.bounds(bounds_);
   }
 
@@ -34,7 +38,11 @@ class Examination {
       const double violation = std::max(below, above);
       if (!(violation > kViolated)) continue;
       pull[j] = above > 0 ? 1 : -1;
-      const Limit limit{.name = program_.constraint_name(j), .value = value, .lower = bounds_.c_lower[j], .upper = bounds_.c_upper[j], .violation = violation};
+      const Limit limit{.name = program_.constraint_name(j),
+                        .value = value,
+                        .lower = bounds_.c_lower[j],
+                        .upper = bounds_.c_upper[j],
+                        .violation = violation};
       out.violated.push_back(placed(limit, program_.place_of_row(j)));
     }
     sort(out.violated, [](const Obstacle& o) { return o.limit.violation; });
@@ -44,12 +52,15 @@ class Examination {
       const double lower = bounds_.x_lower[i], upper = bounds_.x_upper[i], near = kAtBound * (1 + std::abs(x_[i]));
       const bool is_held = (gradient[i] > 0 && x_[i] - lower <= near) || (gradient[i] < 0 && upper - x_[i] <= near);
       if (!is_held) continue;
-      const Limit limit{.name = program_.variable_name(i), .is_bound = true, .value = x_[i], .lower = lower, .upper = upper, .multiplier = -gradient[i]};
+      const Limit limit{
+          .name = program_.variable_name(i), .is_bound = true, .value = x_[i], .lower = lower, .upper = upper, .multiplier = -gradient[i]};
       out.holding.push_back(placed(limit, program_.place_of_variable(i)));
     }
     const auto push = [](const Obstacle& o) { return std::abs(o.limit.multiplier); };
     sort(out.holding, push);
-    std::erase_if(out.holding, [&, hardest = out.holding.empty() ? 0 : push(out.holding.front())](const Obstacle& o) { return push(o) < kHolding * hardest; });
+    std::erase_if(out.holding, [&, hardest = out.holding.empty() ? 0 : push(out.holding.front())](const Obstacle& o) {
+      return push(o) < kHolding * hardest;
+    });
     return out;
   }
 

@@ -1,8 +1,8 @@
 // Why there is no plan: which rows cannot be met, in which stage, and when that is; and which bounds hold them back.
 //
-// Where a solve ends infeasible, sum_j |violation_j| cannot be made smaller: its gradient J' sign(violation) is 0 but for the variables that
-// a bound holds. Those with the largest entries are what another bound would have to give. (core/conflict.hpp finds an irreducible set; on
-// a plan's thousand rows that takes minutes.)
+// Where a solve ends infeasible, sum_j |violation_j| cannot be made smaller: its gradient J' sign(violation) is 0 but for the variables
+// that a bound holds. Those with the largest entries are what another bound would have to give. (core/conflict.hpp finds an irreducible
+// set; on a plan's thousand rows that takes minutes.)
 #pragma once
 
 #include <string>

@@ -18,7 +18,8 @@ class Checker {
     if (!holds) throw std::invalid_argument(where_ + what);
   }
   void box(const Box& box, int size, const std::string& what) const {
-    require(box.lower.size() == size && box.upper.size() == size, "bounds of " + what + " of the wrong length (expected " + std::to_string(size) + ")");
+    require(box.lower.size() == size && box.upper.size() == size,
+            "bounds of " + what + " of the wrong length (expected " + std::to_string(size) + ")");
     for (int i = 0; i < size; ++i) {
       require(box.lower[i] <= box.upper[i], "bounds of " + what + ", entry " + std::to_string(i + 1) + ": " + std::to_string(box.lower[i]) +
                                                 " above " + std::to_string(box.upper[i]));
@@ -27,10 +28,10 @@ class Checker {
   /// values < 0: any number of them.
   void function(const SmoothFunction* f, int arguments, int values, const std::string& what) const {
     if (f == nullptr) return;
-    require(f->num_arguments() == arguments, what + " takes " + std::to_string(f->num_arguments()) + " arguments (expected " +
-                                                 std::to_string(arguments) + ")");
-    require(values < 0 || f->num_values() == values, what + " has " + std::to_string(f->num_values()) + " values (expected " +
-                                                         std::to_string(values) + ")");
+    require(f->num_arguments() == arguments,
+            what + " takes " + std::to_string(f->num_arguments()) + " arguments (expected " + std::to_string(arguments) + ")");
+    require(values < 0 || f->num_values() == values,
+            what + " has " + std::to_string(f->num_values()) + " values (expected " + std::to_string(values) + ")");
   }
 
   void phase(const OcpPhase& phase) const {
@@ -67,7 +68,12 @@ class Checker {
 Box::Box(int n) : lower(Vector::Constant(n, -kInfinite)), upper(Vector::Constant(n, kInfinite)) {}
 
 OcpPhase::OcpPhase(const Dae& dae)
-    : mode(initial_state_of(dae).mode), x(dae.num_states()), y(dae.num_algebraics()), u(dae.num_inputs()), start(dae.num_states()), end(dae.num_states()) {}
+    : mode(initial_state_of(dae).mode),
+      x(dae.num_states()),
+      y(dae.num_algebraics()),
+      u(dae.num_inputs()),
+      start(dae.num_states()),
+      end(dae.num_states()) {}
 
 void validate(const Ocp& ocp) {
   if (!ocp.dae) throw std::invalid_argument(ocp.name + ": no Dae");

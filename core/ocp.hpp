@@ -47,12 +47,12 @@ struct OcpPhase {
 
   std::string name;
   DaeMode mode;
-  int intervals = 20;               // of the first mesh
-  double duration = 1;              // s, where it is free: the guess
+  int intervals = 20;                // of the first mesh
+  double duration = 1;               // s, where it is free: the guess
   double shortest = 0, longest = 0;  // s: the duration is free between them where shortest < longest
 
-  Box x, y, u;     // all along the phase
-  Box start, end;  // of x besides
+  Box x, y, u;                                     // all along the phase
+  Box start, end;                                  // of x besides
   std::shared_ptr<const SmoothFunction> cost;      // L(x, y, u), one value; null for none
   std::shared_ptr<const SmoothFunction> end_cost;  // E(x), one value
   double time_weight = 0;                          // w, 1/s
@@ -60,7 +60,7 @@ struct OcpPhase {
   Box rows_box;
   std::shared_ptr<const SmoothFunction> end_rows;  // e(x), such as the guard that ends the phase
   Box end_rows_box;
-  std::shared_ptr<const SmoothFunction> link;      // R(x), nx values; null for continuity
+  std::shared_ptr<const SmoothFunction> link;  // R(x), nx values; null for continuity
   std::shared_ptr<const Complementarity> contact;
 
   /// A point to start from at this fraction of the phase, 0 to 1; vectors arrive as 0. By default x goes straight from the middle of

@@ -28,7 +28,7 @@ DaeState Plan::at(std::size_t k, double tau) const {
   Vector value(n), derivative(n);
   interpolation_weights(abscissae_, tau, value, derivative);
   DaeState state;
-  state.t = interval.t + tau * interval.length;
+  state.t = tau == 1 && k + 1 < intervals_.size() ? intervals_[k + 1].t : interval.t + tau * interval.length;  // never back by rounding
   state.mode = modes_[static_cast<std::size_t>(interval.phase)];
   state.x = interval.x * value;
   state.xdot = interval.x * derivative / interval.length;
@@ -39,7 +39,8 @@ DaeState Plan::at(std::size_t k, double tau) const {
 }
 
 DaeState Plan::at(double t) const {
-  const auto later = std::upper_bound(intervals_.begin(), intervals_.end(), t, [](double time, const PlanInterval& i) { return time < i.t; });
+  const auto later =
+      std::upper_bound(intervals_.begin(), intervals_.end(), t, [](double time, const PlanInterval& i) { return time < i.t; });
   const std::size_t k = later == intervals_.begin() ? 0 : static_cast<std::size_t>(later - intervals_.begin()) - 1;
   return at(k, std::clamp((t - intervals_[k].t) / intervals_[k].length, 0.0, 1.0));
 }

@@ -5,7 +5,6 @@
 // l_j: the Lagrange polynomials. It is continuous within a phase; between phases x may jump.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "tenon/core/dae.hpp"

@@ -20,8 +20,8 @@ class SmoothFunction {
 
   /// Outputs arrive unset and every entry is written (of the Hessian those on and below the diagonal). Evaluations allocate nothing; a
   /// non-finite value says "cannot evaluate here".
-  virtual void values(ConstVectorRef z, VectorRef f) const = 0;                             // m
-  virtual void jacobian(ConstVectorRef z, Matrix jacobian) const = 0;                       // m x n
+  virtual void values(ConstVectorRef z, VectorRef f) const = 0;                              // m
+  virtual void jacobian(ConstVectorRef z, Matrix jacobian) const = 0;                        // m x n
   virtual void hessian(ConstVectorRef z, ConstVectorRef weights, Matrix hessian) const = 0;  // n x n, of weights' f
 
   virtual std::string value_name(int k) const { return std::to_string(k + 1); }

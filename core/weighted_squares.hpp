@@ -15,9 +15,7 @@ class WeightedSquares final : public SmoothFunction {
   int num_arguments() const override { return static_cast<int>(weights_.size()); }
   int num_values() const override { return 1; }
 
-  void values(ConstVectorRef z, VectorRef f) const override {
-    f[0] = 0.5 * (weights_.array() * (z - reference_).array().square()).sum();
-  }
+  void values(ConstVectorRef z, VectorRef f) const override { f[0] = 0.5 * (weights_.array() * (z - reference_).array().square()).sum(); }
   void jacobian(ConstVectorRef z, Matrix jacobian) const override {
     jacobian.row(0) = (weights_.array() * (z - reference_).array()).matrix().transpose();
   }

@@ -55,7 +55,8 @@ Collocation::Collocation(Ocp ocp, int points, Mesh mesh) : ocp_(std::move(ocp)),
       kinds_.push_back({std::move(functions), std::move(jacobian), std::move(hessian)});
       return static_cast<int>(kinds_.size()) - 1;
     };
-    const int interval = add_kind(CollocationStage::interval(ocp_, p, method_)), end = add_kind(CollocationStage::end(ocp_, p, p + 1 < phases));
+    const int interval = add_kind(CollocationStage::interval(ocp_, p, method_)),
+              end = add_kind(CollocationStage::end(ocp_, p, p + 1 < phases));
     const int intervals = static_cast<int>(mesh_[static_cast<std::size_t>(p)].size()) - 1;
     for (int k = 0; k < intervals; ++k) add_stage(p, k, interval);
     add_stage(p, intervals, end);
@@ -68,8 +69,14 @@ Collocation::Collocation(Ocp ocp, int points, Mesh mesh) : ocp_(std::move(ocp)),
 void Collocation::add_stage(int phase, int interval, int kind) {
   const std::vector<double>& borders = mesh_[static_cast<std::size_t>(phase)];
   const auto k = static_cast<std::size_t>(interval);
-  StagePlace stage{.phase = phase, .interval = interval, .kind = kind, .begin = borders[k], .first_variable = num_variables_, .first_row = num_rows_,
-                   .jacobian_positions = {}, .hessian_positions = {}};
+  StagePlace stage{.phase = phase,
+                   .interval = interval,
+                   .kind = kind,
+                   .begin = borders[k],
+                   .first_variable = num_variables_,
+                   .first_row = num_rows_,
+                   .jacobian_positions = {},
+                   .hessian_positions = {}};
   if (k + 1 < borders.size()) stage.fraction = borders[k + 1] - borders[k];
   num_variables_ += functions(stage).num_own();
   num_rows_ += functions(stage).num_rows();
@@ -92,7 +99,8 @@ void Collocation::find_patterns() {
     const Kind& kind = kinds_[static_cast<std::size_t>(stage.kind)];
     for (const auto& [row, argument] : kind.jacobian_entries)
       stage.jacobian_positions.push_back(jacobian_pattern_.find(stage.first_row + row, variable(stage, argument)));
-    for (const auto& [a, b] : kind.hessian_entries) stage.hessian_positions.push_back(hessian_pattern_.find(variable(stage, a), variable(stage, b)));
+    for (const auto& [a, b] : kind.hessian_entries)
+      stage.hessian_positions.push_back(hessian_pattern_.find(variable(stage, a), variable(stage, b)));
   }
 }
 
@@ -166,64 +174,6 @@ void Collocation::initial_point(VectorRef x) const {
   }
 }
 
-Plan Collocation::plan(ConstVectorRef x) const {
-  const int nx = ocp_.dae->num_states(), ny = ocp_.dae->num_algebraics(), s = method_.points;
-  std::vector<PlanInterval> intervals;
-  std::vector<DaeMode> modes;
-  for (const OcpPhase& phase : ocp_.phases) modes.push_back(phase.mode);
-  double start = 0;
-  for (const StagePlace& stage : stages_) {
-    const double duration = this->duration(stage.phase, x);
-    if (is_end(stage)) {
-      start += duration;
-      continue;
-    }
-    const CollocationStage& functions = this->functions(stage);
-    PlanInterval interval{stage.phase, start + stage.begin * duration, stage.fraction * duration, Eigen::MatrixXd(nx, s + 1), Eigen::MatrixXd(ny, s),
-                          x.segment(stage.first_variable + functions.u_at(), ocp_.dae->num_inputs())};
-    for (int i = 0; i <= s; ++i) {
-      interval.x.col(i) = x.segment(stage.first_variable + functions.x_at(i), nx);
-      if (i > 0) interval.y.col(i - 1) = x.segment(stage.first_variable + functions.y_at(i), ny);
-    }
-    intervals.push_back(std::move(interval));
-  }
-  return Plan(method_.abscissae, std::move(intervals), std::move(modes));
-}
-
-void Collocation::point_of(const Plan& plan, VectorRef x) const {
-  const int nx = ocp_.dae->num_states();
-  std::size_t k = 0;       // interval of the plan
-  double phase_start = 0, phase_end = 0;
-  for (const StagePlace& stage : stages_) {
-    if (stage.interval == 0) {
-      while (plan.intervals()[k].phase != stage.phase) ++k;
-      phase_start = phase_end = plan.intervals()[k].t;
-      for (const PlanInterval& interval : plan.intervals()) {
-        if (interval.phase == stage.phase) phase_end = interval.t + interval.length;
-      }
-      if (duration_variable(stage.phase) >= 0) x[duration_variable(stage.phase)] = phase_end - phase_start;
-    }
-    const CollocationStage& functions = this->functions(stage);
-    const auto at = [&](double fraction) {
-      const double t = phase_start + fraction * (phase_end - phase_start);
-      const auto is_last = [&] { return k + 1 == plan.intervals().size() || plan.intervals()[k + 1].phase != stage.phase; };
-      while (!is_last() && plan.intervals()[k + 1].t < t) ++k;
-      return plan.at(k, std::clamp((t - plan.intervals()[k].t) / plan.intervals()[k].length, 0.0, 1.0));
-    };
-    if (is_end(stage)) {
-      x.segment(stage.first_variable, nx) = at(1).x;
-      continue;
-    }
-    x.segment(stage.first_variable, nx) = at(stage.begin).x;
-    for (int i = 1; i <= functions.points(); ++i) {
-      const DaeState state = at(stage.begin + method_.abscissae[i] * stage.fraction);
-      if (i < functions.points()) x.segment(stage.first_variable + functions.x_at(i), nx) = state.x;
-      x.segment(stage.first_variable + functions.y_at(i), state.y.size()) = state.y;
-      if (i == 1) x.segment(stage.first_variable + functions.u_at(), state.u.size()) = state.u;
-    }
-  }
-}
-
 std::size_t Collocation::stage_of_variable(int i) const {
   const auto after = std::upper_bound(stages_.begin(), stages_.end(), i, [](int v, const StagePlace& s) { return v < s.first_variable; });
   return static_cast<std::size_t>(after - stages_.begin()) - 1;
@@ -232,25 +182,6 @@ std::size_t Collocation::stage_of_variable(int i) const {
 std::size_t Collocation::stage_of_row(int j) const {
   const auto after = std::upper_bound(stages_.begin(), stages_.end(), j, [](int r, const StagePlace& s) { return r < s.first_row; });
   return static_cast<std::size_t>(after - stages_.begin()) - 1;
-}
-
-Collocation::Place Collocation::place_of_row(int j) const {
-  const std::size_t k = stage_of_row(j);
-  const StagePlace& stage = stages_[k];
-  return {static_cast<int>(k), stage.phase, stage.begin + method_.abscissae[functions(stage).point_of_row(j - stage.first_row)] * stage.fraction};
-}
-
-Collocation::Place Collocation::place_of_variable(int i) const {
-  if (i >= first_global_) return {.phase = -1};
-  const std::size_t k = stage_of_variable(i);
-  const StagePlace& stage = stages_[k];
-  return {static_cast<int>(k), stage.phase, stage.begin + method_.abscissae[functions(stage).point_of_variable(i - stage.first_variable)] * stage.fraction};
-}
-
-double Collocation::time_of(const Place& place, ConstVectorRef x) const {
-  double t = 0;
-  for (int p = 0; p < place.phase; ++p) t += duration(p, x);
-  return place.phase < 0 ? 0 : t + place.fraction * duration(place.phase, x);
 }
 
 Nlp::Workspace Collocation::make_workspace() const {
@@ -298,7 +229,9 @@ void Collocation::gradient(ConstVectorRef, Workspace& workspace, VectorRef gradi
   double unused = 0;
   for (std::size_t k = 0; k < stages_.size(); ++k) {
     const int duration = duration_variable(stages_[k].phase);
-    functions(stages_[k]).add_gradient(scratch.at[k], scratch.storage, gradient.data() + stages_[k].first_variable, duration < 0 ? &unused : &gradient[duration]);
+    functions(stages_[k])
+        .add_gradient(scratch.at[k], scratch.storage, gradient.data() + stages_[k].first_variable,
+                      duration < 0 ? &unused : &gradient[duration]);
   }
   for (int p = 0; p < static_cast<int>(ocp_.phases.size()); ++p) {
     if (duration_variable(p) >= 0) gradient[duration_variable(p)] += phase(p).time_weight;

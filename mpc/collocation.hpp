@@ -1,6 +1,6 @@
 // Direct collocation: an optimal control problem as a nonlinear program, by the Radau IIA method with s = 1, 2 or 3 points.
 //
-//     stage k:   X_0  u  X_1 Y_1 .. Y_s  (interval k of its phase)       a phase ends in a stage of its own:   x(T_p)       globals:  free T_p
+//     stage k:   X_0  u  X_1 Y_1 .. Y_s  (interval k of its phase)      a phase ends in a stage of its own:  x(T_p)      globals:  free T_p
 //
 // Stages declare what belongs together, so that the solver eliminates the interior points inside their interval. A Dae without a Hessian
 // is taken without its curvature (Gauss-Newton). Derivation: collocation.md.
@@ -69,9 +69,9 @@ class Collocation final : public Nlp {
 
  private:
   struct StagePlace {
-    int phase = 0, interval = 0;       // interval N: the end of the phase
-    int kind = 0;                      // its functions, in kinds_
-    double begin = 0, fraction = 0;    // of the phase
+    int phase = 0, interval = 0;     // interval N: the end of the phase
+    int kind = 0;                    // its functions, in kinds_
+    double begin = 0, fraction = 0;  // of the phase
     int first_variable = 0, first_row = 0;
     std::vector<int> jacobian_positions, hessian_positions;  // of the entries of its kind in the patterns
   };
@@ -87,7 +87,9 @@ class Collocation final : public Nlp {
   const OcpPhase& phase(int p) const { return ocp_.phases[static_cast<std::size_t>(p)]; }
   bool is_end(const StagePlace& stage) const { return functions(stage).points() == 0; }
   int duration_variable(int phase) const { return duration_variables_[static_cast<std::size_t>(phase)]; }
-  double duration(int phase, ConstVectorRef x) const { return duration_variable(phase) < 0 ? this->phase(phase).duration : x[duration_variable(phase)]; }
+  double duration(int phase, ConstVectorRef x) const {
+    return duration_variable(phase) < 0 ? this->phase(phase).duration : x[duration_variable(phase)];
+  }
   /// The variable behind an argument of a stage's functions.
   int variable(const StagePlace& stage, int argument) const {
     return argument < functions(stage).num_seen() ? stage.first_variable + argument : duration_variable(stage.phase);

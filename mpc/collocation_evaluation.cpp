@@ -76,7 +76,8 @@ void CollocationStage::add_gradient(const At& at, Storage& storage, double* grad
 
 void CollocationStage::rows(At& at, Storage& storage, VectorRef values) const {
   for (int i = 1; i <= points(); ++i) {
-    dae_->residual(mode_, point(at, i), at.workspaces[static_cast<std::size_t>(i - 1)], values.segment((i - 1) * rows_of_point(), rows_of_point()));
+    dae_->residual(mode_, point(at, i), at.workspaces[static_cast<std::size_t>(i - 1)],
+                   values.segment((i - 1) * rows_of_point(), rows_of_point()));
   }
   for (const StageTerm& term : terms_) {
     if (term.first_row < 0) continue;
@@ -103,7 +104,9 @@ void CollocationStage::jacobian(At& at, Storage& storage, Matrix jacobian) const
     const int row = (i - 1) * rows_of_point();
     const double alpha = 1 / at.length();
     differentiate_dynamics(at, storage, i, alpha);
-    for_each_entry(jacobian_pattern_, [&](int r, int c, std::size_t e) { jacobian(row + r, c < nx_ ? x_at(i) + c : y_at(i) + c - nx_) = storage.without_alpha[e]; });
+    for_each_entry(jacobian_pattern_, [&](int r, int c, std::size_t e) {
+      jacobian(row + r, c < nx_ ? x_at(i) + c : y_at(i) + c - nx_) = storage.without_alpha[e];
+    });
     for_each_entry(rate_pattern_, [&](int r, int c, std::size_t e) {
       const double rate = storage.with_alpha[static_cast<std::size_t>(rate_places_[e])];
       for (int j = 0; j <= points(); ++j) jacobian(row + r, x_at(j) + c) += method_.d(i - 1, j) * rate;
@@ -121,7 +124,8 @@ void CollocationStage::jacobian(At& at, Storage& storage, Matrix jacobian) const
     if (term.factors >= 0) term.function->values(storage.z.head(n), storage.f.head(m));
     for (Eigen::Index k = 0; k < m; ++k) {
       const double factor = term.factors >= 0 ? at.v[term.factors + k] : 1;
-      for (Eigen::Index a = 0; a < n; ++a) jacobian(term.first_row + k, term.arguments[static_cast<std::size_t>(a)]) = factor * storage.jacobian(k, a);
+      for (Eigen::Index a = 0; a < n; ++a)
+        jacobian(term.first_row + k, term.arguments[static_cast<std::size_t>(a)]) = factor * storage.jacobian(k, a);
       if (term.factors >= 0) jacobian(term.first_row + k, term.factors + k) += storage.f[k];
       if (term.subtracted >= 0) jacobian(term.first_row + k, term.subtracted + k) = -1;
     }
@@ -134,7 +138,7 @@ void CollocationStage::hessian(At& at, Storage& storage, double sigma, ConstVect
   for (const StageTerm& term : terms_) add_term_hessian(term, at, storage, sigma, lambda, hessian);
 }
 
-// A variable of (xdot, x, y, u) at point i moves with:  xdot_c with X_j by D_ij/h and with T by -xdot_c/T, the others with themselves.   (5)
+// A variable of (xdot, x, y, u) at point i moves with:  xdot_c with X_j by D_ij/h and with T by -xdot_c/T, the others with themselves. (5)
 void CollocationStage::add_dynamics_hessian(At& at, Storage& storage, ConstVectorRef lambda, Matrix hessian) const {
   if (!has_curvature_) return;
   const double alpha = 1 / at.length();
@@ -168,13 +172,15 @@ void CollocationStage::add_duration_hessian(At& at, Storage& storage, int i, Con
   for (int c = 0; c < nx_; ++c) {
     double weight = 0;
     for (int e = rate_pattern_.outer[static_cast<std::size_t>(c)]; e < rate_pattern_.outer[static_cast<std::size_t>(c) + 1]; ++e)
-      weight += weights[rate_pattern_.inner[static_cast<std::size_t>(e)]] * storage.with_alpha[static_cast<std::size_t>(rate_places_[static_cast<std::size_t>(e)])];
+      weight += weights[rate_pattern_.inner[static_cast<std::size_t>(e)]] *
+                storage.with_alpha[static_cast<std::size_t>(rate_places_[static_cast<std::size_t>(e)])];
     for (int j = 0; j <= points(); ++j) hessian(duration_index(), x_at(j) + c) -= weight * method_.d(i - 1, j) / at.duration;
     hessian(duration_index(), duration_index()) += 2 * weight * at.length() * at.xdot(c, i - 1) / (at.duration * at.duration);
   }
 }
 
-void CollocationStage::add_term_hessian(const StageTerm& term, const At& at, Storage& storage, double sigma, ConstVectorRef lambda, Matrix hessian) const {
+void CollocationStage::add_term_hessian(const StageTerm& term, const At& at, Storage& storage, double sigma, ConstVectorRef lambda,
+                                        Matrix hessian) const {
   const auto n = static_cast<Eigen::Index>(term.arguments.size()), m = static_cast<Eigen::Index>(term.function->num_values());
   auto multipliers = storage.multipliers.head(m);
   if (term.first_row < 0)

@@ -51,7 +51,11 @@ Box at_most(int n, double value) {
 }  // namespace
 
 CollocationStage::CollocationStage(const Ocp& ocp, int phase)
-    : dae_(ocp.dae), mode_(ocp.phases[static_cast<std::size_t>(phase)].mode), nx_(dae_->num_states()), ny_(dae_->num_algebraics()), nu_(dae_->num_inputs()) {
+    : dae_(ocp.dae),
+      mode_(ocp.phases[static_cast<std::size_t>(phase)].mode),
+      nx_(dae_->num_states()),
+      ny_(dae_->num_algebraics()),
+      nu_(dae_->num_inputs()) {
   if (ocp.phases.size() > 1) prefix_ = ocp.phases[static_cast<std::size_t>(phase)].name + ".";
 }
 
@@ -70,14 +74,20 @@ CollocationStage CollocationStage::interval(const Ocp& ocp, int p, const Radau& 
   if (stage.has_curvature_) stage.hessian_pattern_ = stage.dae_->hessian_pattern();
   for_each_entry(stage.rate_pattern_, [&](int r, int c, std::size_t) {
     stage.rate_places_.push_back(stage.jacobian_pattern_.find(r, c));
-    if (stage.rate_places_.back() < 0) throw std::invalid_argument(ocp.name + ": the Dae's rate Jacobian is not within its Jacobian's pattern");
+    if (stage.rate_places_.back() < 0)
+      throw std::invalid_argument(ocp.name + ": the Dae's rate Jacobian is not within its Jacobian's pattern");
   });
   stage.num_rows_ = s * stage.rows_of_point();
   stage.rows_box_ = equal_to_zero(stage.num_rows_);
   for (int i = 1; i <= s; ++i) {
     if (phase.cost)
-      stage.terms_.push_back({.function = phase.cost, .arguments = stage.arguments_at(i, true), .name = {}, .weight = method.weights[i - 1], .is_integrand = true});
-    if (phase.rows) stage.add_term({.function = phase.rows, .arguments = stage.arguments_at(i, true), .name = "path", .point = i}, phase.rows_box);
+      stage.terms_.push_back({.function = phase.cost,
+                              .arguments = stage.arguments_at(i, true),
+                              .name = {},
+                              .weight = method.weights[i - 1],
+                              .is_integrand = true});
+    if (phase.rows)
+      stage.add_term({.function = phase.rows, .arguments = stage.arguments_at(i, true), .name = "path", .point = i}, phase.rows_box);
   }
   if (phase.contact) stage.add_contacts(*phase.contact);
   return stage;
@@ -114,14 +124,17 @@ void CollocationStage::add_contacts(const Complementarity& contact) {
     for (int i = 1; i <= s; ++i)
       add_term({.function = contact.gaps, .arguments = arguments_at(i, false), .name = "gap", .point = i}, at_least_zero(n));
     for (const int i : {0, s})
-      add_term({.function = contact.gaps, .arguments = arguments_at(i, false), .name = "force_times_gap", .point = i, .factors = lambda}, at_most(n, contact.epsilon));
+      add_term({.function = contact.gaps, .arguments = arguments_at(i, false), .name = "force_times_gap", .point = i, .factors = lambda},
+               at_most(n, contact.epsilon));
   }
   if (!contact.barrier) return;
   const int n = contact.barrier->num_values();
   for (int i = 1; i <= s; ++i) {
     add_term({.function = contact.barrier, .arguments = arguments_at(i, true), .name = "barrier", .point = i}, at_least_zero(n));
     if (i == s && contact.product == Complementarity::Product::baumgarte)
-      add_term({.function = contact.barrier, .arguments = arguments_at(i, true), .name = "force_times_barrier", .point = i, .factors = lambda}, at_most(n, contact.epsilon));
+      add_term(
+          {.function = contact.barrier, .arguments = arguments_at(i, true), .name = "force_times_barrier", .point = i, .factors = lambda},
+          at_most(n, contact.epsilon));
   }
 }
 
@@ -138,7 +151,8 @@ std::vector<std::pair<int, int>> CollocationStage::jacobian_entries() const {
   std::vector<std::pair<int, int>> entries;
   for (int i = 1; i <= points(); ++i) {
     const int row = (i - 1) * rows_of_point();
-    for_each_entry(jacobian_pattern_, [&](int r, int c, std::size_t) { entries.emplace_back(row + r, c < nx_ ? x_at(i) + c : y_at(i) + c - nx_); });
+    for_each_entry(jacobian_pattern_,
+                   [&](int r, int c, std::size_t) { entries.emplace_back(row + r, c < nx_ ? x_at(i) + c : y_at(i) + c - nx_); });
     for_each_entry(rate_pattern_, [&](int r, int c, std::size_t) {
       for (int j = 0; j <= points(); ++j) entries.emplace_back(row + r, x_at(j) + c);
       if (has_duration_) entries.emplace_back(row + r, duration_index());
@@ -205,13 +219,15 @@ std::string CollocationStage::row_name(int j, int k) const {
   const int i = point_of_row(j);
   if (j < points() * rows_of_point()) {
     const int r = j % rows_of_point();
-    return prefix_ + (r < nx_ ? "dynamics_" + dae_->state_name(r) : "equation_" + dae_->algebraic_name(r - nx_)) + "[" + std::to_string(k) + "." + std::to_string(i) + "]";
+    return prefix_ + (r < nx_ ? "dynamics_" + dae_->state_name(r) : "equation_" + dae_->algebraic_name(r - nx_)) + "[" + std::to_string(k) +
+           "." + std::to_string(i) + "]";
   }
   for (const StageTerm& term : terms_) {
     const int v = j - term.first_row;
     if (term.first_row < 0 || v < 0 || v >= term.function->num_values()) continue;
     if (term.subtracted >= 0) return prefix_ + "link_" + dae_->state_name(v);
-    return prefix_ + term.name + "_" + term.function->value_name(v) + (points() == 0 ? "" : "[" + std::to_string(k) + "." + std::to_string(i) + "]");
+    return prefix_ + term.name + "_" + term.function->value_name(v) +
+           (points() == 0 ? "" : "[" + std::to_string(k) + "." + std::to_string(i) + "]");
   }
   return "";
 }

@@ -38,8 +38,8 @@ class CollocationStage {
   /// has_next: another phase follows.
   static CollocationStage end(const Ocp& ocp, int phase, bool has_next);
 
-  int num_own() const { return own_; }                    // variables of the stage itself
-  int num_seen() const { return seen_; }                  // with those of the next one that it touches, without T
+  int num_own() const { return own_; }    // variables of the stage itself
+  int num_seen() const { return seen_; }  // with those of the next one that it touches, without T
   int num_arguments() const { return seen_ + (has_duration_ ? 1 : 0); }
   int num_rows() const { return num_rows_; }
   const Box& rows_box() const { return rows_box_; }
@@ -55,11 +55,11 @@ class CollocationStage {
 
   /// Where a stage is evaluated, with the storage that this takes.
   struct At {
-    const double* v = nullptr;     // num_seen
-    double t = 0;                  // s, at its start
-    double duration = 0;           // s, of the phase
-    double fraction = 0;           // of the phase that the interval takes
-    Eigen::MatrixXd xdot = {};     // nx x s
+    const double* v = nullptr;                    // num_seen
+    double t = 0;                                 // s, at its start
+    double duration = 0;                          // s, of the phase
+    double fraction = 0;                          // of the phase that the interval takes
+    Eigen::MatrixXd xdot = {};                    // nx x s
     std::vector<Dae::Workspace> workspaces = {};  // one for each point
 
     double length() const { return duration * fraction; }

@@ -62,7 +62,9 @@ Mesh refined(const Mesh& mesh, const MeshError& error, int points, double tolera
     std::vector<double>& borders = out.emplace_back(1, 0.0);
     for (std::size_t k = 0; k + 1 < mesh[p].size(); ++k) {
       const double ratio = error.steps[p][k] / (kSafety * tolerance);
-      const double asked = error.steps[p][k] <= tolerance ? 1 : std::isfinite(ratio) ? std::ceil(std::pow(ratio, 0.5 / points)) : kMostParts;
+      const double asked = error.steps[p][k] <= tolerance ? 1
+                           : std::isfinite(ratio)         ? std::ceil(std::pow(ratio, 0.5 / points))
+                                                          : kMostParts;
       const int parts = static_cast<int>(std::clamp(asked, 1.0, static_cast<double>(kMostParts)));
       const double begin = mesh[p][k], width = mesh[p][k + 1] - begin;
       for (int i = 1; i < parts; ++i) borders.push_back(begin + width * i / parts);

@@ -1,6 +1,6 @@
 // How far a plan is from the solution of its own differential equations, and a mesh on which it is nearer.
 //
-//     e_k = | X^(k+1) - X_{k+1} |       X^: the end of a step of order 2 s + 1 from the same X_k with the same inputs          collocation.md (11)
+//     e_k = | X^_{k+1} - X_{k+1} |      X^: the end of a step of order 2 s + 1 from the same X_k with the same inputs  collocation.md (11)
 //
 // Steps of that order one after the other, from the start on, give the error that all of them have added up to.
 #pragma once

@@ -42,7 +42,8 @@ double abscissa(int s, int i) {
 }  // namespace
 
 Radau radau(int points) {
-  if (points < 1 || points > kMostPoints) throw std::invalid_argument("Radau method with " + std::to_string(points) + " points (expected 1 to 8)");
+  if (points < 1 || points > kMostPoints)
+    throw std::invalid_argument("Radau method with " + std::to_string(points) + " points (expected 1 to 8)");
   Radau out;
   out.points = points;
   out.abscissae = Vector::Zero(points + 1);

@@ -1,5 +1,8 @@
 #include "tenon/mpc/radau_step.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "tenon/mpc/pattern_entries.hpp"
 
 namespace tenon {

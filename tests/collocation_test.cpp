@@ -33,7 +33,9 @@ SolverFactory factory_of(const std::string& name) {
 struct Case {
   std::string scene, contact;
 
-  OcpScene load() const { return load_ocp_scene(scene, contact.empty() ? std::vector<std::string>{} : std::vector<std::string>{"contact=" + contact}); }
+  OcpScene load() const {
+    return load_ocp_scene(scene, contact.empty() ? std::vector<std::string>{} : std::vector<std::string>{"contact=" + contact});
+  }
   friend std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.scene << c.contact; }
 };
 
@@ -62,7 +64,8 @@ TEST_P(EveryScene, ObeysTheDerivativeLawAtRandomPoints) {
     const DerivativeReport report = check_derivatives(program, x, normal(random), lambda, GetParam().contact == "law" ? 1e-4 : 1e-6);
     ASSERT_TRUE(report.finite);
     for (const DerivativeError& e : report.worst)
-      ADD_FAILURE() << points << " points, " << e.what << " of " << e.row << " by " << e.variable << ": " << e.analytic << ", by differences " << e.difference;
+      ADD_FAILURE() << points << " points, " << e.what << " of " << e.row << " by " << e.variable << ": " << e.analytic
+                    << ", by differences " << e.difference;
   }
 }
 
@@ -89,8 +92,8 @@ TEST_P(EveryScene, IsPlannedAndReplayedWithinItsMeshError) {
   // order, and where friction stops a block within a step they count.
   constexpr double kFactor = 3, kReplay = 2e-9;
   const OcpScene scene = GetParam().load();
-  const PlannerOutcome outcome =
-      make_plan(scene.ocp, factory_of("newton-kkt"), {.points = scene.points, .tolerance = scene.tolerance, .refinements = scene.refinements});
+  const PlannerOutcome outcome = make_plan(scene.ocp, factory_of("newton-kkt"),
+                                           {.points = scene.points, .tolerance = scene.tolerance, .refinements = scene.refinements});
   ASSERT_EQ(outcome.result.status, Status::solved);
   EXPECT_LE(outcome.error.worst, scene.tolerance);
   const Vector end = outcome.plan.at(outcome.plan.duration()).x;
@@ -111,7 +114,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, testing::ValuesIn(every_case()), []
 struct TouchingBall {
   static constexpr int kStates = 2, kAlgebraics = 1, kInputs = 0;
   template <class T>
-  void equations(const DaeMode&, const std::array<T, 2>& x, const std::array<T, 1>& y, const std::array<T, 0>&, std::array<T, 2>& xdot, std::array<T, 1>& g) const {
+  void equations(const DaeMode&, const std::array<T, 2>& x, const std::array<T, 1>& y, const std::array<T, 0>&, std::array<T, 2>& xdot,
+                 std::array<T, 1>& g) const {
     const T acceleration = y[0] - 9.81;
     xdot = {x[1], acceleration};
     g[0] = acceleration + 20 * x[1] + 100 * x[0] + 1e4 * x[0] * x[0] * x[0];

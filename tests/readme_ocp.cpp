@@ -1,6 +1,5 @@
 // An optimal control problem of one's own: a crane's trolley moves 1 m, the load hangs still at both ends, as fast as can be.
 #include <cstdio>
-
 #include <tenon/core/automatic_dae.hpp>
 #include <tenon/mpc/planner.hpp>
 #include <tenon/solvers/make_solver.hpp>
@@ -10,8 +9,8 @@ struct Crane {
   static constexpr int kStates = 4, kAlgebraics = 0, kInputs = 1;
 
   template <class T>
-  void equations(const tenon::DaeMode&, const std::array<T, 4>& x, const std::array<T, 0>&, const std::array<T, 1>& u, std::array<T, 4>& xdot,
-                 std::array<T, 0>&) const {
+  void equations(const tenon::DaeMode&, const std::array<T, 4>& x, const std::array<T, 0>&, const std::array<T, 1>& u,
+                 std::array<T, 4>& xdot, std::array<T, 0>&) const {
     xdot = {x[2], x[3], u[0], -(9.81 * sin(x[1]) + u[0] * cos(x[1])) / 0.8};
   }
 };

@@ -6,6 +6,7 @@
 //     floor, at y = 0:  v_y+ = -e v_y-,   v_x+ = v_x-                catch, at d = 0:  v+ = v_c (the cup is heavy)               (2)
 //
 // A cup pushes up and does not pull: lambda_y >= 0. The price of a rough catch is its impulse, squared.
+#include <cmath>
 #include <memory>
 #include <stdexcept>
 
@@ -26,8 +27,8 @@ struct BallAndCup {
   double mass, gravity, rate;
 
   template <class T>
-  void equations(const DaeMode& mode, const std::array<T, 8>& x, const std::array<T, 2>& y, const std::array<T, 2>& u, std::array<T, 8>& xdot,
-                 std::array<T, 2>& g) const {
+  void equations(const DaeMode& mode, const std::array<T, 8>& x, const std::array<T, 2>& y, const std::array<T, 2>& u,
+                 std::array<T, 8>& xdot, std::array<T, 2>& g) const {
     const std::array<T, 2> a{y[0] / mass, y[1] / mass - gravity};
     xdot = {x[kVx], x[kVy], a[0], a[1], x[kCupVx], x[kCupVy], u[0], u[1]};
     for (std::size_t i = 0; i < 2; ++i) {
@@ -44,7 +45,9 @@ struct BallAndCup {
     values[2] = mass * (0.5 * s.x.segment(kVx, 2).squaredNorm() + gravity * s.x[kY]);
   }
   std::string name() const { return "bouncing-ball-catch"; }
-  std::string state_name(int i) const { return std::array{"x1", "y1", "vx1", "vy1", "x2", "y2", "vx2", "vy2"}[static_cast<std::size_t>(i)]; }
+  std::string state_name(int i) const {
+    return std::array{"x1", "y1", "vx1", "vy1", "x2", "y2", "vx2", "vy2"}[static_cast<std::size_t>(i)];
+  }
   std::string algebraic_name(int i) const { return i == 0 ? "lambda_cup_x" : "lambda_cup_y"; }
   std::string input_name(int i) const { return i == 0 ? "cup_ax" : "cup_ay"; }
   std::string output_name(int i) const { return std::array{"gap_floor", "mode_cup", "energy"}[static_cast<std::size_t>(i)]; }
@@ -55,11 +58,16 @@ Scenery draw() {
   Scenery out;
   out.title = "a ball bounces and is caught";
   out.bodies.push_back({.name = "floor", .shapes = {SceneryShape::half_space({0, 1, 0}, {0, -kRadius, 0})}});
-  out.bodies.push_back({.name = "cup", .position = {"x2", "y2", 0},
-                        .shapes = {SceneryShape::line({{-2 * kRadius, kRadius, 0}, {-kRadius, -kRadius, 0}, {kRadius, -kRadius, 0}, {2 * kRadius, kRadius, 0}}).colored("link")},
-                        .trail = true});
+  out.bodies.push_back(
+      {.name = "cup",
+       .position = {"x2", "y2", 0},
+       .shapes = {SceneryShape::line(
+                      {{-2 * kRadius, kRadius, 0}, {-kRadius, -kRadius, 0}, {kRadius, -kRadius, 0}, {2 * kRadius, kRadius, 0}})
+                      .colored("link")},
+       .trail = true});
   out.bodies.push_back({.name = "ball", .position = {"x1", "y1", 0}, .shapes = {SceneryShape::disc(kRadius)}, .trail = true});
-  out.arrows.push_back({.name = "cup's force", .at = {.body = "ball", .at = {}}, .vector = {"lambda_cup_x", "lambda_cup_y", 0}, .frame = "world"});
+  out.arrows.push_back(
+      {.name = "cup's force", .at = {.body = "ball", .at = {}}, .vector = {"lambda_cup_x", "lambda_cup_y", 0}, .frame = "world"});
   out.plots.push_back({.title = "cup's acceleration", .unit = "m/s^2", .columns = {"cup_ax", "cup_ay"}});
   return out;
 }
@@ -93,7 +101,8 @@ OcpScene make(const OcpModelInput& in) {
     after = x;
     after[kVy] = -e * x[kVy];
   });
-  flight.guess = [=, gravity = in["gravity"], height = in["height"], low = in["least_height"]](double f, VectorRef x, VectorRef, VectorRef) {
+  flight.guess = [=, gravity = in["gravity"], height = in["height"], low = in["least_height"]](double f, VectorRef x, VectorRef,
+                                                                                               VectorRef) {
     const double t = f * fall;
     x << speed * t, height - 0.5 * gravity * t * t, speed, -gravity * t, cup, low, 0, 0;
   };
@@ -113,7 +122,8 @@ OcpScene make(const OcpModelInput& in) {
   });
   bounce.guess = [=, gravity = in["gravity"], low = in["least_height"]](double f, VectorRef x, VectorRef, VectorRef) {
     const double t = f * rise, meets = speed * (fall + rise), top = 0.5 * gravity * rise * rise;
-    x << speed * (fall + t), gravity * t * (rise - 0.5 * t), speed, gravity * (rise - t), cup + f * (meets - cup), low + f * (top - low), 0, 0;
+    x << speed * (fall + t), gravity * t * (rise - 0.5 * t), speed, gravity * (rise - t), cup + f * (meets - cup), low + f * (top - low), 0,
+        0;
   };
 
   caught.name = "catch";
@@ -140,8 +150,19 @@ OcpScene make(const OcpModelInput& in) {
 
 OcpModel ball_catch_model() {
   return {.name = "bouncing-ball-catch",
-          .parameters = {{"mass", 0.05}, {"gravity", 9.81}, {"height", 1}, {"speed", 0.8}, {"restitution", 0.8}, {"cup", 1}, {"least_height", 0.1},
-                         {"goal_x", 0.6}, {"goal_y", 0.3}, {"largest_acceleration", 15}, {"softness", 0.02}, {"time_weight", 2}, {"rate", 10}},
+          .parameters = {{"mass", 0.05},
+                         {"gravity", 9.81},
+                         {"height", 1},
+                         {"speed", 0.8},
+                         {"restitution", 0.8},
+                         {"cup", 1},
+                         {"least_height", 0.1},
+                         {"goal_x", 0.6},
+                         {"goal_y", 0.3},
+                         {"largest_acceleration", 15},
+                         {"softness", 0.02},
+                         {"time_weight", 2},
+                         {"rate", 10}},
           .contacts = {},
           .duration = 2,
           .intervals = 10,

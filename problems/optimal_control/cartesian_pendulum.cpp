@@ -4,6 +4,7 @@
 //
 // h' = p.v, h'' = v.v + p.v': linear in lambda with the factor -p.p/m, so that F can be solved for (xdot, lambda) wherever p is not 0.
 // The rod pulls with lambda l. [J. Baumgarte, Comp. Meth. Appl. Mech. Eng. 1 (1972) 1]
+#include <cmath>
 #include <memory>
 
 #include "tenon/core/automatic_dae.hpp"
@@ -51,7 +52,11 @@ Scenery draw(const Bob& bob) {
   out.bodies.push_back({.name = "pivot", .shapes = {SceneryShape::disc(0.03 * bob.length).colored("ground")}});
   out.bodies.push_back({.name = "bob", .position = {"x1", "y1", 0}, .shapes = {SceneryShape::disc(0.08 * bob.length)}, .trail = true});
   out.links.push_back({.from = {.body = "pivot", .at = {}}, .to = {.body = "bob", .at = {}}});
-  out.arrows.push_back({.name = "weight and rod", .kind = SceneryArrow::Kind::velocity, .at = {.body = "bob", .at = {}}, .vector = {"vx1", "vy1", 0}, .frame = "world"});
+  out.arrows.push_back({.name = "weight and rod",
+                        .kind = SceneryArrow::Kind::velocity,
+                        .at = {.body = "bob", .at = {}},
+                        .vector = {"vx1", "vy1", 0},
+                        .frame = "world"});
   return out;
 }
 
@@ -75,7 +80,8 @@ OcpScene make(const OcpModelInput& in) {
   phase.cost = std::make_shared<WeightedSquares>(weights, Vector::Zero(6));
   phase.guess = [bob](double fraction, VectorRef x, VectorRef y, VectorRef) {
     const double angle = kPi * fraction, omega = kPi;
-    x << bob.length * std::sin(angle), -bob.length * std::cos(angle), omega * bob.length * std::cos(angle), omega * bob.length * std::sin(angle);
+    x << bob.length * std::sin(angle), -bob.length * std::cos(angle), omega * bob.length * std::cos(angle),
+        omega * bob.length * std::sin(angle);
     y[0] = bob.mass * bob.gravity / bob.length;
   };
   scene.ocp.dae = dae;

@@ -7,7 +7,8 @@
 namespace tenon {
 
 const std::vector<OcpModel>& ocp_models() {
-  static const std::vector<OcpModel> models{ball_catch_model(), cart_pole_model(), pendulum_model(), cartesian_pendulum_model(), push_and_slide_model()};
+  static const std::vector<OcpModel> models{ball_catch_model(), cart_pole_model(), pendulum_model(), cartesian_pendulum_model(),
+                                            push_and_slide_model()};
   return models;
 }
 

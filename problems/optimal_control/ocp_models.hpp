@@ -32,7 +32,7 @@ struct OcpModel {
 
 const std::vector<OcpModel>& ocp_models();
 
-OcpModel cart_pole_model();           // pole_swing_up.cpp
+OcpModel cart_pole_model();  // pole_swing_up.cpp
 OcpModel pendulum_model();
 OcpModel cartesian_pendulum_model();  // cartesian_pendulum.cpp
 OcpModel ball_catch_model();          // ball_catch.cpp

@@ -3,7 +3,7 @@
 //     model = "cart-pole"      one of ocp_models.hpp
 //     contact = "phases"       how contacts enter, where the model leaves the choice: phases, complementarity, baumgarte, law
 //     [parameters]             the model's own numbers, by name; --set NAME=VALUE
-//     [horizon]                duration (s), intervals, points (1 to 3, of the Radau method), tolerance (of the mesh), refinements (at most)
+//     [horizon]                duration (s), intervals, points (1 to 3, of the Radau method), tolerance (of the mesh), refinements
 #pragma once
 
 #include <string>

@@ -1,6 +1,7 @@
 // cart-pole and pendulum as Ocps: a pole on a cart, swung up by a bounded force.
 //
 //     D(theta) = M + m sin^2,    a = (u + m l omega^2 sin + m g cos sin) / D,    alpha = -(a cos + g sin) / l              swing_up.md (1)
+#include <cmath>
 #include <memory>
 
 #include "tenon/core/automatic_dae.hpp"
@@ -30,10 +31,13 @@ struct Pole {
   // 1/2 (M + m) v^2 + m l v omega cos + 1/2 m l^2 omega^2 - m g l cos
   void outputs(const DaeState& s, VectorRef values) const {
     const double v = s.x[2], omega = s.x[3], cosine = orientation * std::cos(s.x[1]);
-    values[0] = 0.5 * (cart_mass + pole_mass) * v * v + pole_mass * length * (v * omega * cosine + 0.5 * length * omega * omega - gravity * cosine);
+    values[0] =
+        0.5 * (cart_mass + pole_mass) * v * v + pole_mass * length * (v * omega * cosine + 0.5 * length * omega * omega - gravity * cosine);
   }
   std::string name() const { return "pole"; }
-  std::string state_name(int i) const { return std::array{"position", "angle", "velocity", "angular_velocity"}[static_cast<std::size_t>(i)]; }
+  std::string state_name(int i) const {
+    return std::array{"position", "angle", "velocity", "angular_velocity"}[static_cast<std::size_t>(i)];
+  }
   std::string input_name(int) const { return "force"; }
   std::string output_name(int) const { return "energy"; }
 };
@@ -44,7 +48,9 @@ Scenery draw(const Pole& pole) {
   const double length = pole.length, size = 0.25 * length;
   out.bodies.push_back({.name = "rail", .shapes = {SceneryShape::line({{-4 * length, 0, 0}, {4 * length, 0, 0}}).colored("ground")}});
   out.bodies.push_back({.name = "cart", .position = {"position", 0, 0}, .shapes = {SceneryShape::box({1.6 * size, size, 0})}});
-  out.bodies.push_back({.name = "pole", .parent = "cart", .angle = "angle",
+  out.bodies.push_back({.name = "pole",
+                        .parent = "cart",
+                        .angle = "angle",
                         .shapes = {SceneryShape::line({{0, 0, 0}, {0, -pole.orientation * length, 0}}).colored("link"),
                                    SceneryShape::disc(0.3 * size).at({0, -pole.orientation * length, 0})},
                         .trail = true});
@@ -99,8 +105,14 @@ OcpScene make_pendulum(const OcpModelInput& in) {
 
 OcpModel cart_pole_model() {
   return {.name = "cart-pole",
-          .parameters = {{"cart_mass", 5}, {"pole_mass", 0.5}, {"length", 0.5}, {"gravity", 9.806}, {"largest_force", 20}, {"least_position", 0},
-                         {"largest_position", 2}, {"goal", 1}},
+          .parameters = {{"cart_mass", 5},
+                         {"pole_mass", 0.5},
+                         {"length", 0.5},
+                         {"gravity", 9.806},
+                         {"largest_force", 20},
+                         {"least_position", 0},
+                         {"largest_position", 2},
+                         {"goal", 1}},
           .contacts = {},
           .duration = 5,
           .intervals = 100,
@@ -109,8 +121,14 @@ OcpModel cart_pole_model() {
 
 OcpModel pendulum_model() {
   return {.name = "pendulum",
-          .parameters = {{"cart_mass", 1}, {"pole_mass", 0.1}, {"length", 0.8}, {"gravity", 9.81}, {"largest_force", 80}, {"weight", 2e3},
-                         {"rate_weight", 2e-2}, {"force_weight", 2e-2}},
+          .parameters = {{"cart_mass", 1},
+                         {"pole_mass", 0.1},
+                         {"length", 0.8},
+                         {"gravity", 9.81},
+                         {"largest_force", 80},
+                         {"weight", 2e3},
+                         {"rate_weight", 2e-2},
+                         {"force_weight", 2e-2}},
           .contacts = {},
           .duration = 1,
           .intervals = 20,

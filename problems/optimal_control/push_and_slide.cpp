@@ -4,10 +4,9 @@
 //
 // What lambda is says the mode:  free     lambda = 0
 //                                held     h'' + 2 r h' + r^2 h = 0                       phases: approach -> push -> slide, plastic impact
-//                                input    lambda = u_2, with 0 <= lambda _|_ h >= 0       complementarity; or with h'' + 2 r h' + r^2 h: baumgarte
+//                                input    lambda = u_2, 0 <= lambda _|_ h >= 0            complementarity; baumgarte with h'' + 2 r h' + r^2 h
 //                                law      lambda = k d log(1 + exp(-h/d))                 a soft pad, compliant by nature
 #include <memory>
-#include <stdexcept>
 
 #include "tenon/core/automatic_dae.hpp"
 #include "tenon/core/automatic_function.hpp"
@@ -44,16 +43,23 @@ struct FingerAndBlock {
   }
 
   template <class T>
-  void equations(const DaeMode& mode, const std::array<T, 4>& x, const std::array<T, 1>& y, const std::array<T, 2>& u, std::array<T, 4>& xdot,
-                 std::array<T, 1>& g) const {
+  void equations(const DaeMode& mode, const std::array<T, 4>& x, const std::array<T, 1>& y, const std::array<T, 2>& u,
+                 std::array<T, 4>& xdot, std::array<T, 1>& g) const {
     T finger, block;
     accelerations(x, y[0], u[0], finger, block);
     xdot = {x[kFingerV], x[kBlockV], finger, block};
     switch (mode.discrete[0]) {
-      case kFree: g[0] = y[0]; break;
-      case kHeld: g[0] = baumgarte(x, finger, block); break;
-      case kInput: g[0] = y[0] - u[1]; break;
-      default: g[0] = y[0] - stiffness * softness * soft_plus(T((x[kFinger] - x[kBlock]) / softness));
+      case kFree:
+        g[0] = y[0];
+        break;
+      case kHeld:
+        g[0] = baumgarte(x, finger, block);
+        break;
+      case kInput:
+        g[0] = y[0] - u[1];
+        break;
+      default:
+        g[0] = y[0] - stiffness * softness * soft_plus(T((x[kFinger] - x[kBlock]) / softness));
     }
   }
   void initial_state(DaeState& s) const { s.mode.discrete = {kFree}; }
@@ -75,7 +81,8 @@ Scenery draw() {
   Scenery out;
   out.title = "a finger pushes a block";
   out.bodies.push_back({.name = "table", .shapes = {SceneryShape::half_space({0, 1, 0}, {0, -kSize / 2, 0})}});
-  out.bodies.push_back({.name = "finger", .position = {"x1", 0, 0}, .shapes = {SceneryShape::capsule({-1.5 * kSize, 0, 0}, {-kSize / 6, 0, 0}, kSize / 6)}});
+  out.bodies.push_back(
+      {.name = "finger", .position = {"x1", 0, 0}, .shapes = {SceneryShape::capsule({-1.5 * kSize, 0, 0}, {-kSize / 6, 0, 0}, kSize / 6)}});
   out.bodies.push_back({.name = "block", .position = {"x2", 0, 0}, .shapes = {SceneryShape::box({kSize, kSize, 0}).at({kSize / 2, 0, 0})}});
   out.arrows.push_back({.name = "contact", .at = {.body = "block", .at = {}}, .vector = {"lambda_finger", 0, 0}, .frame = "world"});
   out.plots.push_back({.title = "forces", .unit = "N", .columns = {"force", "lambda_finger"}});
@@ -129,8 +136,12 @@ void add_single_phase(const OcpModelInput& in, const Task& task, const FingerAnd
   // There, a push, and back while the block slides on.
   phase.guess = [task, duration = in.duration](double f, VectorRef x, VectorRef y, VectorRef u) {
     const double there = 0.2, apart = 0.6, released = 0.6 * task.to[1];
-    const double block = f < there ? 0 : f < apart ? released * (f - there) / (apart - there) : released + (task.to[1] - released) * (f - apart) / (1 - apart);
-    const double finger = f < there ? task.from[0] * (1 - f / there) : f < apart ? block : released + (task.to[0] - released) * (f - apart) / (1 - apart);
+    const double block = f < there   ? 0
+                         : f < apart ? released * (f - there) / (apart - there)
+                                     : released + (task.to[1] - released) * (f - apart) / (1 - apart);
+    const double finger = f < there   ? task.from[0] * (1 - f / there)
+                          : f < apart ? block
+                                      : released + (task.to[0] - released) * (f - apart) / (1 - apart);
     x << finger, block, 0, 0;
     x[kBlockV] = f < there ? 0 : task.to[1] / duration;
     y[0] = u[1] = f > there && f < apart ? 1 : 0.01;
@@ -168,7 +179,9 @@ void add_phases(const OcpModelInput& in, const Task& task, const OcpPhase& like,
   slide.rows_box = Box(1);
   slide.rows_box.lower[0] = 0;
   approach.guess = [task](double f, VectorRef x, VectorRef, VectorRef) { x << (1 - f) * task.from[0], 0, 0.1, 0; };
-  push.guess = [task](double f, VectorRef x, VectorRef y, VectorRef) { x << 0.5 * f * task.to[1], 0.5 * f * task.to[1], 0.2, 0.2, y[0] = 1; };
+  push.guess = [task](double f, VectorRef x, VectorRef y, VectorRef) {
+    x << 0.5 * f * task.to[1], 0.5 * f * task.to[1], 0.2, 0.2, y[0] = 1;
+  };
   slide.guess = [task](double f, VectorRef x, VectorRef, VectorRef) {
     x << 0.5 * task.to[1] + f * (task.to[0] - 0.5 * task.to[1]), 0.5 * (1 + f) * task.to[1], 0, 0.2 * (1 - f);
   };
@@ -176,8 +189,10 @@ void add_phases(const OcpModelInput& in, const Task& task, const OcpPhase& like,
 }
 
 OcpScene make(const OcpModelInput& in) {
-  require_positive(in, {"finger_mass", "block_mass", "slip_speed", "gravity", "rate", "stiffness", "softness", "largest_force", "epsilon", "clearance", "distance"});
-  const FingerAndBlock model{in["finger_mass"], in["block_mass"], in["friction"], in["slip_speed"], in["gravity"], in["rate"], in["stiffness"], in["softness"]};
+  require_positive(in, {"finger_mass", "block_mass", "slip_speed", "gravity", "rate", "stiffness", "softness", "largest_force", "epsilon",
+                        "clearance", "distance"});
+  const FingerAndBlock model{in["finger_mass"], in["block_mass"], in["friction"],  in["slip_speed"],
+                             in["gravity"],     in["rate"],       in["stiffness"], in["softness"]};
   OcpScene scene;
   const auto dae = std::make_shared<AutomaticDae<FingerAndBlock>>(model);
   scene.ocp.dae = dae;
@@ -199,8 +214,19 @@ OcpScene make(const OcpModelInput& in) {
 
 OcpModel push_and_slide_model() {
   return {.name = "push-and-slide",
-          .parameters = {{"finger_mass", 0.5}, {"block_mass", 0.3}, {"friction", 0.3}, {"slip_speed", 0.05}, {"gravity", 9.81}, {"rate", 10}, {"stiffness", 300},
-                         {"softness", 2e-3}, {"largest_force", 20}, {"epsilon", 1e-5}, {"clearance", 0.05}, {"distance", 0.3}, {"time_weight", 1}},
+          .parameters = {{"finger_mass", 0.5},
+                         {"block_mass", 0.3},
+                         {"friction", 0.3},
+                         {"slip_speed", 0.05},
+                         {"gravity", 9.81},
+                         {"rate", 10},
+                         {"stiffness", 300},
+                         {"softness", 2e-3},
+                         {"largest_force", 20},
+                         {"epsilon", 1e-5},
+                         {"clearance", 0.05},
+                         {"distance", 0.3},
+                         {"time_weight", 1}},
           .contacts = {"complementarity", "phases", "baumgarte", "law"},
           .duration = 1.5,
           .intervals = 30,
