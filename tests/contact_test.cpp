@@ -291,7 +291,7 @@ TEST(CableSway, StrikesThePostAndKeepsItsAudit) {
 // the flat.
 TEST(ChainFountain, ChangesItsMomentumByWeightAndPotAlone) {
   const SceneRun run = run_scene("chain-fountain", {"simulation.duration=0.2"});
-  EXPECT_LT(run.largest("energy_error"), 1e-6);
+  EXPECT_LT(run.largest("energy_error"), 1e-7);
   EXPECT_GE(run.events.size(), 50u) << "beads rest in the pot";
   constexpr int kBeads = 100, kLinks = 99;
   int looked_at = 0;
@@ -310,6 +310,25 @@ TEST(ChainFountain, ChangesItsMomentumByWeightAndPotAlone) {
     EXPECT_NEAR(y, pot - 0.002 * kBeads * kGravity, 1e-9) << state.t;
   }
   EXPECT_GE(looked_at, 3);
+}
+
+// Over the rim a bead comes from a face onto a corner: the gap's curvature jumps. Each feature is a mode of its own, so that the tolerance
+// is met by steps that grow slowly, and what the run loses does not depend on it.
+TEST(ChainFountain, ConvergesThoughItsBeadsGoRoundACorner) {
+  std::vector<double> energies;
+  std::vector<long> steps;
+  for (const double rtol : {1e-5, 1e-6, 1e-7}) {
+    const SceneRun run = run_scene("chain-fountain", {}, "dop853", rtol);
+    energies.push_back(run.last("energy"));
+    steps.push_back(run.result.steps);
+    double exchanged = run.column("energy")[0] - run.last("energy");
+    EXPECT_GT(exchanged, 0.03) << "J, lost in collisions";
+    for (int bead = 0; bead < 100; ++bead) exchanged += 0.5 * 0.002 * run.final.x.segment<2>(4 * bead + 2).squaredNorm();
+    EXPECT_LT(run.largest("energy_error"), std::max(1e-6, 0.5 * rtol) * exchanged) << exchanged;
+  }
+  EXPECT_NEAR(energies[0], energies[2], 2e-4);
+  EXPECT_NEAR(energies[1], energies[2], 2e-5);
+  EXPECT_LT(steps[2], 2 * steps[0]);
 }
 
 TEST(Jacobian, AgreesWithDifferencesInEveryMode) {

@@ -107,7 +107,8 @@ Dae::Workspace ContactDae<D>::make_workspace() const {
   bodies->touching.reserve(m);
   bodies->resting.reserve(m);
   bodies->trial.discrete.reserve(m);
-  bodies->trial.held.resize(2);
+  bodies->trial.held.resize(kHeldFeatures + static_cast<int>(m));
+  bodies->features.assign(m, kNearest);
   return bodies;
 }
 
@@ -123,7 +124,8 @@ void ContactDae<D>::initial_state(DaeState& state) const {
     if (scene_.constraints[i].is_joint()) state.mode.discrete[i] = kContact;
   }
   Workspace workspace = make_workspace();
-  state.mode.held.setZero(2);
+  state.mode.held.setConstant(kHeldFeatures + num_constraints(), kNearest);
+  state.mode.held[kHeldRedundant] = 0;
   state.mode.held[kHeldEnergy] = energy(state.t, state.x, workspace);
 }
 
@@ -140,6 +142,12 @@ void ContactDae<D>::load(double t, ConstVectorRef x, Bodies& bodies) const {
     else
       pose.p = bodies.q[i].template head<D>(), pose.pdot = bodies.v[i].template head<D>();
   }
+}
+
+template <int D>
+void ContactDae<D>::load(const DaeMode& mode, double t, ConstVectorRef x, Bodies& bodies) const {
+  load(t, x, bodies);
+  for (int i = 0; i < num_constraints(); ++i) bodies.features[static_cast<std::size_t>(i)] = static_cast<int>(mode.held[kHeldFeatures + i]);
 }
 
 template <int D>
@@ -180,13 +188,15 @@ template <int D>
 GapValue<double, D> ContactDae<D>::gap_of(int constraint, double t, const Bodies& bodies) const {
   const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(constraint)];
   const Pose<double, D>&A = of(bodies.poses, c.a), &B = of(bodies.poses, c.b);
-  return evaluate_gap<double, D>(gap_at(c, A, B), t, A, B, of(bodies.q, c.a), of(bodies.q, c.b));
+  return evaluate_gap<double, D>(gap_at(c, A, B, bodies.features[static_cast<std::size_t>(constraint)]), t, A, B, of(bodies.q, c.a),
+                                 of(bodies.q, c.b));
 }
 
 template <int D>
 GapValue<double, D> ContactDae<D>::gap(int constraint, double t, ConstVectorRef x, Workspace& workspace) const {
   auto& bodies = static_cast<Bodies&>(*workspace);
   load(t, x, bodies);
+  std::fill(bodies.features.begin(), bodies.features.end(), kNearest);
   return gap_of(constraint, t, bodies);
 }
 
@@ -305,7 +315,7 @@ bool ContactDae<D>::project(const DaeMode& mode, double t, VectorRef x, Workspac
     return largest;
   };
   for (int k = 0; k < kMostProjections; ++k) {
-    load(t, x, bodies);
+    load(mode, t, x, bodies);
     factorise(mode, t, bodies);
     const double open =
         move([](const auto& g) { return g.h; },
@@ -333,7 +343,7 @@ template <int D>
 void ContactDae<D>::derivatives(const DaeMode& mode, double t, ConstVectorRef x, ConstVectorRef, Workspace& workspace, VectorRef xdot,
                                 VectorRef y) const {
   auto& bodies = static_cast<Bodies&>(*workspace);
-  load(t, x, bodies);
+  load(mode, t, x, bodies);
   if (scene_.with_audit) xdot.tail(num_states_ - works_).setZero();
   apply_forces(t, bodies, xdot.data());
   solve_multipliers(mode, t, bodies);
@@ -352,7 +362,7 @@ void ContactDae<D>::derivatives(const DaeMode& mode, double t, ConstVectorRef x,
 template <int D>
 void ContactDae<D>::residual(const DaeMode& mode, const DaePoint& at, Workspace& workspace, VectorRef F) const {
   auto& bodies = static_cast<Bodies&>(*workspace);
-  load(at.t, at.x, bodies);
+  load(mode, at.t, at.x, bodies);
   if (scene_.with_audit) F.segment(works_, num_states_ - works_).setZero();
   apply_forces(at.t, bodies, F.data());
   if (scene_.with_audit) {
@@ -379,7 +389,8 @@ void ContactDae<D>::residual(const DaeMode& mode, const DaePoint& at, Workspace&
     const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
     const Place a = place(c.a), b = place(c.b);
     const Pose<double, D>&A = of(bodies.poses, c.a), &B = of(bodies.poses, c.b);
-    const auto rows = constraint_rows<double, D>(c, gap_at(c, A, B), at.t, A, B, of(bodies.q, c.a), of(bodies.q, c.b), at.y[i]);
+    const auto rows = constraint_rows<double, D>(c, gap_at(c, A, B, bodies.features[static_cast<std::size_t>(i)]), at.t, A, B,
+                                                 of(bodies.q, c.a), of(bodies.q, c.b), at.y[i]);
     double row = rows.law + softness(mode, c) * at.y[i];
     for (int l = 0; l < a.nv; ++l) F[a.v + l] -= rows.on_a[l], row += rows.H_A[l] * at.xdot[a.v + l];
     for (int l = 0; l < b.nv; ++l) F[b.v + l] -= rows.on_b[l], row += rows.H_B[l] * at.xdot[b.v + l];
