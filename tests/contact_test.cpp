@@ -221,33 +221,6 @@ TEST(FallingBody, RocksToRestInFiniteTime) {
   EXPECT_EQ(last.rates, Vector::Zero(2));
 }
 
-TEST(Scenes, CloseTheirEnergyAuditWithoutPenetration) {
-  struct Expected {
-    const char* scene;
-    double duration;
-    int least_contacts;
-  };
-  for (const Expected& expected : {Expected{"ball-maze", 6, 10},
-                                   {"ball-and-cup", 3, 10},
-                                   {"circuit-breaker", 0.3, 3},
-                                   {"car", 3, 10},
-                                   {"paper-clip", 0.5, 3},
-                                   {"impact-oscillator", 10, 10},
-                                   {"falling-body", 1.5, 3},
-                                   {"rocking-block", 3, 4}}) {
-    const SceneRun run = run_scene(expected.scene, {"simulation.duration=" + std::to_string(expected.duration)});
-    const Vector energy = run.column("energy");
-    EXPECT_LT(run.largest("energy_error"), 1e-6 * (energy.maxCoeff() - energy.minCoeff())) << expected.scene;
-    EXPECT_GE(run.events_to(1).size(), static_cast<std::size_t>(expected.least_contacts)) << expected.scene;
-    for (const std::string& name : run.names) {
-      const bool is_gap = name.starts_with("gap_"), is_force = name.starts_with("lambda_") && run.is_contact(name);
-      if (is_gap || is_force) {
-        EXPECT_GT(run.smallest(name), is_gap ? -1e-8 : -1e-6) << expected.scene << " " << name;
-      }
-    }
-  }
-}
-
 TEST(RockingBlock, LosesSpeedAtEachImpactAsHousnerFound) {
   const SceneRun run = run_scene("rocking-block");
   // omega+ / omega- = 1 - 3/2 sin^2 alpha about a corner that does not slide; the corner that rises carries the ratio
@@ -291,7 +264,7 @@ TEST(CableSway, StrikesThePostAndKeepsItsAudit) {
 // the flat.
 TEST(ChainFountain, ChangesItsMomentumByWeightAndPotAlone) {
   const SceneRun run = run_scene("chain-fountain", {"simulation.duration=0.2"});
-  EXPECT_LT(run.largest("energy_error"), 1e-6);
+  EXPECT_LT(run.largest("energy_error"), 1e-7);
   EXPECT_GE(run.events.size(), 50u) << "beads rest in the pot";
   constexpr int kBeads = 100, kLinks = 99;
   int looked_at = 0;
@@ -310,6 +283,25 @@ TEST(ChainFountain, ChangesItsMomentumByWeightAndPotAlone) {
     EXPECT_NEAR(y, pot - 0.002 * kBeads * kGravity, 1e-9) << state.t;
   }
   EXPECT_GE(looked_at, 3);
+}
+
+// Over the rim a bead comes from a face onto a corner: the gap's curvature jumps. Each feature is a mode of its own, so that the tolerance
+// is met by steps that grow slowly, and what the run loses does not depend on it.
+TEST(ChainFountain, ConvergesThoughItsBeadsGoRoundACorner) {
+  std::vector<double> energies;
+  std::vector<long> steps;
+  for (const double rtol : {1e-5, 1e-6, 1e-7}) {
+    const SceneRun run = run_scene("chain-fountain", {}, "dop853", rtol);
+    energies.push_back(run.last("energy"));
+    steps.push_back(run.result.steps);
+    double exchanged = run.column("energy")[0] - run.last("energy");
+    EXPECT_GT(exchanged, 0.03) << "J, lost in collisions";
+    for (int bead = 0; bead < 100; ++bead) exchanged += 0.5 * 0.002 * run.final.x.segment<2>(4 * bead + 2).squaredNorm();
+    EXPECT_LT(run.largest("energy_error"), std::max(1e-6, 0.5 * rtol) * exchanged) << exchanged;
+  }
+  EXPECT_NEAR(energies[0], energies[2], 2e-4);
+  EXPECT_NEAR(energies[1], energies[2], 2e-5);
+  EXPECT_LT(steps[2], 2 * steps[0]);
 }
 
 TEST(Jacobian, AgreesWithDifferencesInEveryMode) {

@@ -30,7 +30,7 @@ const std::vector<ContactRow>& contact_rows() {
       {"chain/100", "rope-sway", {"beads=100"}, 1e-8, "dop853", true, 10},
       {"chain/200", "rope-sway", {"beads=200"}, 1e-8, "dop853", true, 5},
       {"chain/100/ida", "rope-sway", {"beads=100"}, 1e-8, "ida", true, 3},
-      {"chain/fountain", "chain-fountain", {}, 1e-5, "dop853", true, 3},
+      {"chain/fountain", "chain-fountain", {}, 1e-6, "dop853", true, 3},
   };
   return table;
 }

@@ -13,9 +13,7 @@ namespace tenon::contact {
 
 namespace {
 
-constexpr double kRank = 1e-11;         // of H M^-1 H': smaller pivots count as dependent contacts
-constexpr int kMostProjections = 10;    // Newton's steps back to the joints of index 2
-constexpr double kClosedJoint = 1e-12;  // m or rad: one more step squares it away
+constexpr double kRank = 1e-11;  // of H M^-1 H': smaller pivots count as dependent contacts
 
 const std::vector<std::string>& position_names(int dimension) {
   static const std::vector<std::string> planar{"x", "y", "theta"}, spatial{"x", "y", "z", "qw", "qx", "qy", "qz"};
@@ -107,7 +105,8 @@ Dae::Workspace ContactDae<D>::make_workspace() const {
   bodies->touching.reserve(m);
   bodies->resting.reserve(m);
   bodies->trial.discrete.reserve(m);
-  bodies->trial.held.resize(2);
+  bodies->trial.held.resize(kHeldFeatures + static_cast<int>(m));
+  bodies->features.assign(m, kNearest);
   return bodies;
 }
 
@@ -123,7 +122,8 @@ void ContactDae<D>::initial_state(DaeState& state) const {
     if (scene_.constraints[i].is_joint()) state.mode.discrete[i] = kContact;
   }
   Workspace workspace = make_workspace();
-  state.mode.held.setZero(2);
+  state.mode.held.setConstant(kHeldFeatures + num_constraints(), kNearest);
+  state.mode.held[kHeldRedundant] = 0;
   state.mode.held[kHeldEnergy] = energy(state.t, state.x, workspace);
 }
 
@@ -140,6 +140,12 @@ void ContactDae<D>::load(double t, ConstVectorRef x, Bodies& bodies) const {
     else
       pose.p = bodies.q[i].template head<D>(), pose.pdot = bodies.v[i].template head<D>();
   }
+}
+
+template <int D>
+void ContactDae<D>::load(const DaeMode& mode, double t, ConstVectorRef x, Bodies& bodies) const {
+  load(t, x, bodies);
+  for (int i = 0; i < num_constraints(); ++i) bodies.features[static_cast<std::size_t>(i)] = static_cast<int>(mode.held[kHeldFeatures + i]);
 }
 
 template <int D>
@@ -180,13 +186,15 @@ template <int D>
 GapValue<double, D> ContactDae<D>::gap_of(int constraint, double t, const Bodies& bodies) const {
   const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(constraint)];
   const Pose<double, D>&A = of(bodies.poses, c.a), &B = of(bodies.poses, c.b);
-  return evaluate_gap<double, D>(gap_at(c, A, B), t, A, B, of(bodies.q, c.a), of(bodies.q, c.b));
+  return evaluate_gap<double, D>(gap_at(c, A, B, bodies.features[static_cast<std::size_t>(constraint)]), t, A, B, of(bodies.q, c.a),
+                                 of(bodies.q, c.b));
 }
 
 template <int D>
 GapValue<double, D> ContactDae<D>::gap(int constraint, double t, ConstVectorRef x, Workspace& workspace) const {
   auto& bodies = static_cast<Bodies&>(*workspace);
   load(t, x, bodies);
+  std::fill(bodies.features.begin(), bodies.features.end(), kNearest);
   return gap_of(constraint, t, bodies);
 }
 
@@ -285,39 +293,6 @@ void ContactDae<D>::solve_multipliers(const DaeMode& mode, double t, Bodies& bod
   solve(bodies);
 }
 
-/// Newton's method on h = 0 and h' = 0 of the joints of index 2, each step the shortest in the metric of M:  dq = E M^-1 H' mu with
-/// H M^-1 H' mu = -h,  likewise dv from -h'. What else is active stays where it is.   (20)
-template <int D>
-bool ContactDae<D>::project(const DaeMode& mode, double t, VectorRef x, Workspace& workspace) const {
-  auto& bodies = static_cast<Bodies&>(*workspace);
-  const auto move = [&](auto error, auto apply) {
-    double largest = 0;
-    for (std::size_t row = 0; row < bodies.active.size(); ++row) {
-      const std::size_t i = static_cast<std::size_t>(bodies.active[row]);
-      const double e = scene_.constraints[i].is_index_2() ? error(bodies.gaps[i]) : 0;
-      bodies.rhs[static_cast<int>(row)] = -e;
-      largest = std::max(largest, std::abs(e));
-    }
-    solve(bodies);
-    for (auto& step : bodies.acceleration) step.setZero();
-    set_accelerations(bodies);
-    for (std::size_t i = 0; i < places_.size(); ++i) apply(places_[i], i);
-    return largest;
-  };
-  for (int k = 0; k < kMostProjections; ++k) {
-    load(t, x, bodies);
-    factorise(mode, t, bodies);
-    const double open =
-        move([](const auto& g) { return g.h; },
-             [&](Place at, std::size_t i) { x.segment(at.q, at.nq) += along(bodies.q[i], bodies.acceleration[i]).head(at.nq); });
-    move([](const auto& g) { return g.hdot; },
-         [&](Place at, std::size_t i) { x.segment(at.v, at.nv) += bodies.acceleration[i].head(at.nv); });
-    if (!x.allFinite()) return false;
-    if (open <= kClosedJoint) return true;
-  }
-  return false;
-}
-
 /// vdot = M^-1 (Q + sum H' lambda), on top of M^-1 Q which stands there already.
 template <int D>
 void ContactDae<D>::set_accelerations(Bodies& bodies) const {
@@ -333,7 +308,7 @@ template <int D>
 void ContactDae<D>::derivatives(const DaeMode& mode, double t, ConstVectorRef x, ConstVectorRef, Workspace& workspace, VectorRef xdot,
                                 VectorRef y) const {
   auto& bodies = static_cast<Bodies&>(*workspace);
-  load(t, x, bodies);
+  load(mode, t, x, bodies);
   if (scene_.with_audit) xdot.tail(num_states_ - works_).setZero();
   apply_forces(t, bodies, xdot.data());
   solve_multipliers(mode, t, bodies);
@@ -352,7 +327,7 @@ void ContactDae<D>::derivatives(const DaeMode& mode, double t, ConstVectorRef x,
 template <int D>
 void ContactDae<D>::residual(const DaeMode& mode, const DaePoint& at, Workspace& workspace, VectorRef F) const {
   auto& bodies = static_cast<Bodies&>(*workspace);
-  load(at.t, at.x, bodies);
+  load(mode, at.t, at.x, bodies);
   if (scene_.with_audit) F.segment(works_, num_states_ - works_).setZero();
   apply_forces(at.t, bodies, F.data());
   if (scene_.with_audit) {
@@ -379,7 +354,8 @@ void ContactDae<D>::residual(const DaeMode& mode, const DaePoint& at, Workspace&
     const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
     const Place a = place(c.a), b = place(c.b);
     const Pose<double, D>&A = of(bodies.poses, c.a), &B = of(bodies.poses, c.b);
-    const auto rows = constraint_rows<double, D>(c, gap_at(c, A, B), at.t, A, B, of(bodies.q, c.a), of(bodies.q, c.b), at.y[i]);
+    const auto rows = constraint_rows<double, D>(c, gap_at(c, A, B, bodies.features[static_cast<std::size_t>(i)]), at.t, A, B,
+                                                 of(bodies.q, c.a), of(bodies.q, c.b), at.y[i]);
     double row = rows.law + softness(mode, c) * at.y[i];
     for (int l = 0; l < a.nv; ++l) F[a.v + l] -= rows.on_a[l], row += rows.H_A[l] * at.xdot[a.v + l];
     for (int l = 0; l < b.nv; ++l) F[b.v + l] -= rows.on_b[l], row += rows.H_B[l] * at.xdot[b.v + l];

@@ -24,6 +24,7 @@ enum ContactMode : int { kFree = 0, kCollision = 1, kContact = 2 };
 /// What stands where in DaeMode::held.
 inline constexpr int kHeldRedundant = 0;  // 1 where active contacts depend on one another
 inline constexpr int kHeldEnergy = 1;     // J, at the start
+inline constexpr int kHeldFeatures = 2;   // from here on, one for each constraint: the shape's feature that it touches (features.hpp)
 
 inline constexpr double kGapTolerance = 1e-12;          // m: a free contact collides where its gap closes at less than minus this
 inline constexpr double kTouching = 1e-9;               // m: gaps up to here touch
@@ -94,6 +95,10 @@ class ContactDae final : public Dae {
   double inverse_mass(int body, int l) const { return of(inverse_masses_, body)[l]; }
   double softness(const DaeMode& mode, const Constraint<D>& c) const;
   void load(double t, ConstVectorRef x, Bodies& bodies) const;
+  void load(const DaeMode& mode, double t, ConstVectorRef x, Bodies& bodies) const;
+  bool pass_features(DaeState& state, std::span<const int> fired, const Bodies& bodies) const;
+  void hold_features(DaeState& state, const Bodies& bodies) const;
+  Transition react(DaeState& state, std::span<const int> fired, Bodies& bodies, const EventLog& log) const;
   void apply_forces(double t, Bodies& bodies, double* powers) const;
   GapValue<double, D> gap_of(int constraint, double t, const Bodies& bodies) const;
   void factorise(const DaeMode& mode, double t, Bodies& bodies) const;
@@ -138,6 +143,7 @@ struct ContactDae<D>::Bodies : Dae::Scratch {
   std::vector<Velocities<double, D>> v, force, acceleration;
   std::vector<Velocities<double, D>> travel;  // v + M^-1 H' mu: what the positions go by
   std::vector<Pose<double, D>> poses;
+  std::vector<int> features;  // of each constraint, held or kNearest
 
   std::vector<int> active;                            // constraints, in the order of the envelope
   std::vector<GapValue<double, D>> gaps;              // by constraint; those of active ones are there

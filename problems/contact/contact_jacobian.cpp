@@ -87,7 +87,7 @@ void ContactDae<D>::find_pattern() {
 template <int D>
 void ContactDae<D>::jacobian(const DaeMode& mode, const DaePoint& at, double alpha, Workspace& workspace, std::span<double> values) const {
   auto& bodies = static_cast<Bodies&>(*workspace);
-  load(at.t, at.x, bodies);
+  load(mode, at.t, at.x, bodies);
   std::fill(values.begin(), values.end(), 0.0);
   const auto add = [&](int row, int column, double value) { values[static_cast<std::size_t>(pattern_.find(row, column))] += value; };
   // the derivatives of one row, over the local positions and velocities of bodies a and b
@@ -144,7 +144,7 @@ void ContactDae<D>::jacobian(const DaeMode& mode, const DaePoint& at, double alp
     const Place a = place(c.a), b = place(c.b);
     const LocalState<D> local(of(bodies.q, c.a), of(bodies.v, c.a), of(bodies.q, c.b), of(bodies.v, c.b));
     const Pose<LocalDual<D>, D> A(local.q_a, local.v_a), B(local.q_b, local.v_b);
-    const Gap<D> gap = gap_at(c, of(bodies.poses, c.a), of(bodies.poses, c.b));
+    const Gap<D> gap = gap_at(c, of(bodies.poses, c.a), of(bodies.poses, c.b), bodies.features[static_cast<std::size_t>(i)]);
     const auto rows = constraint_rows<LocalDual<D>, D>(c, gap, at.t, A, B, local.q_a, local.q_b, at.y[i]);
     // forces and power are linear in lambda: their values at one unit are the column of lambda
     const auto unit =

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "tenon/problems/contact/contact_dae.hpp"
+#include "tenon/problems/contact/features.hpp"
 
 namespace tenon::contact {
 
@@ -19,13 +20,17 @@ double ContactDae<D>::acceleration(const Constraint<D>& c, const GapValue<double
 template <int D>
 void ContactDae<D>::guards(const DaeMode& mode, const DaePoint& at, Workspace& workspace, VectorRef values) const {
   auto& bodies = static_cast<Bodies&>(*workspace);
-  load(at.t, at.x, bodies);
+  load(mode, at.t, at.x, bodies);
   values.setOnes();
   for (const int i : contacts_) {
     const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
     const int m = mode.discrete[static_cast<std::size_t>(i)];
     if (m == kContact) {
       values[2 * i] = at.y[i];
+      const int feature = bodies.features[static_cast<std::size_t>(i)];
+      int next;  // is the transition's business; a nanometre late, so that a start on the border is awake
+      if (feature != kNearest)
+        values[2 * i + 1] = inside_feature(c, feature, seen_from(c, of(bodies.poses, c.a), of(bodies.poses, c.b)), next) + kTouching;
       continue;
     }
     const GapValue<double, D> g = gap_of(i, at.t, bodies);
@@ -77,7 +82,7 @@ bool ContactDae<D>::guards_read_derivatives(const DaeMode& mode) const {
 template <int D>
 double ContactDae<D>::max_step(const DaeState& state, Workspace& workspace) const {
   auto& bodies = static_cast<Bodies&>(*workspace);
-  load(state.t, state.x, bodies);
+  load(state.mode, state.t, state.x, bodies);
   const double gravity = scene_.gravity.norm();
   double longest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
@@ -147,7 +152,7 @@ std::string ContactDae<D>::output_name(int i) const {
 template <int D>
 void ContactDae<D>::outputs(const DaeState& state, Workspace& workspace, VectorRef values) const {
   auto& bodies = static_cast<Bodies&>(*workspace);
-  load(state.t, state.x, bodies);
+  load(state.mode, state.t, state.x, bodies);
   const int n = static_cast<int>(contacts_.size());
   for (int k = 0; k < n; ++k) {
     const int i = contacts_[static_cast<std::size_t>(k)];

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "tenon/problems/contact/contact_dae.hpp"
+#include "tenon/problems/contact/features.hpp"
 
 namespace tenon::contact {
 
@@ -31,13 +32,51 @@ std::array<Point<double, 3>, 2> tangents_of(const Point<double, 3>& n) {
 template <int D>
 Transition ContactDae<D>::transition(DaeState& state, std::span<const int> fired, Workspace& workspace, const EventLog& log) const {
   auto& bodies = static_cast<Bodies&>(*workspace);
-  load(state.t, state.x, bodies);
+  load(state.mode, state.t, state.x, bodies);
+  const Transition transition = react(state, fired, bodies, log);
+  if (transition.changed) hold_features(state, bodies);
+  return transition;
+}
+
+template <int D>
+Transition ContactDae<D>::react(DaeState& state, std::span<const int> fired, Bodies& bodies, const EventLog& log) const {
+  if (pass_features(state, fired, bodies)) return {.changed = true};
   if (release(state, fired, bodies, log)) return {.changed = true};
   if (settle_one_law(state, bodies, log)) return {.changed = true};
   if (begin_one_law(state, bodies, log)) return {.changed = true};
   const Transition collision = collide(state, bodies, log);
   if (collision.changed || !collision.failure.empty()) return collision;
   return distribute(state, bodies, log);
+}
+
+/// Contacts that have slid to the end of their feature go on to the next.
+template <int D>
+bool ContactDae<D>::pass_features(DaeState& state, std::span<const int> fired, const Bodies& bodies) const {
+  bool is_changed = false;
+  for (const int guard : fired) {
+    const int i = guard / 2;
+    if (guard % 2 == 0 || state.mode.discrete[static_cast<std::size_t>(i)] != kContact) continue;
+    const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
+    int next = kNearest;
+    inside_feature(c, bodies.features[static_cast<std::size_t>(i)], seen_from(c, of(bodies.poses, c.a), of(bodies.poses, c.b)), next);
+    state.mode.held[kHeldFeatures + i] = next;
+    is_changed = true;
+  }
+  return is_changed;
+}
+
+/// A contact that has come to hold something holds the feature that is nearest; one that is off, none.
+template <int D>
+void ContactDae<D>::hold_features(DaeState& state, const Bodies& bodies) const {
+  for (const int i : contacts_) {
+    const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
+    double& held = state.mode.held[kHeldFeatures + i];
+    if (c.shape.vertices.empty()) continue;
+    if (state.mode.discrete[static_cast<std::size_t>(i)] != kContact)
+      held = kNearest;
+    else if (held == kNearest)
+      held = nearest_feature(c, seen_from(c, of(bodies.poses, c.a), of(bodies.poses, c.b)));
+  }
 }
 
 template <int D>

@@ -38,6 +38,7 @@ struct Convex {
   std::vector<Point<double, D>> vertices;              // in the body's axes
   Point<double, D> normal = Point<double, D>::Zero();  // of a face without end
   Point<double, D> half = Point<double, D>::Zero();    // of a box
+  const Point<double, D>& vertex(int k) const { return vertices[static_cast<std::size_t>(k) % vertices.size()]; }
   bool is_face() const { return normal.squaredNorm() > 0; }
   bool is_box() const { return half.squaredNorm() > 0; }
 };
