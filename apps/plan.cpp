@@ -9,12 +9,14 @@
 #include "tenon/apps/next_step.hpp"
 #include "tenon/apps/observers.hpp"
 #include "tenon/apps/plan_obstacles.hpp"
+#include "tenon/apps/plan_task.hpp"
 #include "tenon/apps/result_json.hpp"
 #include "tenon/apps/table.hpp"
 #include "tenon/apps/verb.hpp"
 #include "tenon/core/trajectory.hpp"
 #include "tenon/mpc/planner.hpp"
 #include "tenon/problems/optimal_control/ocp_scene.hpp"
+#include "tenon/problems/tasks.hpp"
 
 namespace tenon {
 
@@ -122,6 +124,7 @@ int run_plan(const Arguments& given) {
   check_report(arguments);
   if (arguments.output.empty()) arguments.output = record_beside_report(arguments, ".csv", "");
   if (arguments.trace.empty()) arguments.trace = record_beside_report(arguments, ".jsonl", "");
+  if (is_task(arguments.names.front())) return plan_task(arguments);
   const OcpScene scene = load_ocp_scene(arguments.names.front(), arguments.set);
   if (!arguments.output.empty()) check_output_path(arguments.output);
   const std::string solver = arguments.solver.value_or(default_solver());

@@ -2,7 +2,7 @@
 //
 // Where a solve ends infeasible, sum_j |violation_j| cannot be made smaller: its gradient J' sign(violation) is 0 but for the variables
 // that a bound holds. Those with the largest entries are what another bound would have to give. (core/conflict.hpp finds an irreducible
-// set; on a plan's thousand rows that takes minutes.)
+// set, but gives up on as many rows as a plan has.)
 #pragma once
 
 #include <string>

@@ -12,7 +12,8 @@ namespace {
 constexpr double kViolated = 1e-9, kActive = 1e-6;  // relative to the size of the bound
 constexpr double kCancelled = 1e-4;                 // what sum y a may keep of its terms: x is a stationary point only so far
 constexpr double kWeight = 1e-6;                    // a share of the largest multiplier below this is rounding
-constexpr double kMaxEntries = 4e6;                 // of the dense least-squares problem, some seconds
+constexpr double kMaxEntries = 4e6;                 // of the dense least-squares problem
+constexpr double kMostWork = 4e9;                   // multiplications in it, some seconds
 
 /// One side of a row or variable:  sign (value - bound) <= 0
 struct Side {
@@ -65,7 +66,7 @@ class Contradiction {
     columns.array().rowwise() /= length.transpose().array();
     Vector target = Vector::Zero(touched + 1);
     target[touched] = -1;
-    const Vector y = nonnegative_least_squares(columns, target);
+    const Vector y = nonnegative_least_squares(columns, target, kMostWork);
 
     const Vector left = columns.topRows(touched) * y, terms = columns.topRows(touched).cwiseAbs() * y;
     const bool proven = columns.row(touched).dot(y) < -0.5 &&

@@ -27,7 +27,7 @@ struct Limit {
 };
 
 /// An irreducible set of rows and bounds that, linearised at x, no step meets together; worst violation first. Empty where there is none,
-/// where x is not finite or the set would be too large to look for (thousands of rows in the vicinity).
+/// where x is not finite or the set would take more than seconds to look for (many hundreds of rows in the vicinity).
 std::vector<Limit> conflict(const Nlp& problem, const Vector& x);
 
 /// Hard rows and bounds that x violates by more than the tolerance, worst first; multipliers 0.

@@ -25,17 +25,19 @@ int entering_column(const Eigen::MatrixXd& A, const Vector& residual, double thr
 
 }  // namespace
 
-Vector nonnegative_least_squares(const Eigen::MatrixXd& A, const Vector& b) {
+Vector nonnegative_least_squares(const Eigen::MatrixXd& A, const Vector& b, double most_work) {
   Vector y = Vector::Zero(A.cols());
   if (A.cols() == 0) return y;
   const double threshold = kOptimal * b.norm() * A.colwise().norm().maxCoeff();
   std::vector<int> positive;                                      // the columns where y > 0
   std::vector<bool> refused(static_cast<std::size_t>(A.cols()));  // positive already, or found to be dependent on those
-  for (Eigen::Index round = 0; round < 3 * A.cols(); ++round) {
+  double work = 0;
+  for (Eigen::Index round = 0; round < 3 * A.cols() && work < most_work; ++round) {
     const int entering = entering_column(A, b - A * y, threshold, refused);
     if (entering < 0) break;
     refused[std::size_t(entering)] = true;
     positive.push_back(entering);
+    work += static_cast<double>(A.size()) + static_cast<double>(A.rows()) * static_cast<double>(positive.size() * positive.size());
     Vector target = least_squares(A, positive, b);
     if (target[target.size() - 1] <= 0) {
       positive.pop_back();

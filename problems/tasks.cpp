@@ -1,9 +1,12 @@
 #include "tenon/problems/tasks.hpp"
 
+#include <algorithm>
 #include <filesystem>
+#include <sstream>
 
 #include "tenon/core/named_file.hpp"
 #include "tenon/core/nearest_name.hpp"
+#include "tenon/core/read_file.hpp"
 #include "tenon/problems/peg_in_hole/task.hpp"
 #include "tenon/problems/soft_walls/task.hpp"
 #include "tenon/problems/touch_down/task.hpp"
@@ -55,6 +58,17 @@ std::vector<std::string> builtin_tasks() {
 
 std::string describe_builtin_task(const std::string& name) {
   return description_of(name, embedded_tasks());
+}
+
+bool is_task(const std::string& name_or_path) {
+  const std::vector<std::string> names = builtin_tasks();
+  if (std::find(names.begin(), names.end(), name_or_path) != names.end()) return true;
+  if (!std::filesystem::is_regular_file(name_or_path)) return false;
+  std::istringstream lines(read_file(name_or_path));
+  for (std::string line; std::getline(lines, line) && !line.starts_with('[');) {
+    if (line.starts_with("task") && line.find('=') != std::string::npos) return true;
+  }
+  return false;
 }
 
 ControlTask make_task(const std::string& name_or_path, const std::vector<std::string>& overrides) {

@@ -17,6 +17,9 @@ std::vector<std::string> builtin_tasks();
 /// What a built-in task is, from the comment that opens its file.
 std::string describe_builtin_task(const std::string& name);
 
+/// Whether the name is that of a built-in task, or of a file with a key `task`.
+bool is_task(const std::string& name_or_path);
+
 /// A built-in task, or one from a file, with overrides `key.path=value`, or NAME=VALUE for one of its [parameters]. Throws InputError, with
 /// the place of what is wrong; std::invalid_argument for a name that is neither, the nearest named.
 ControlTask make_task(const std::string& name_or_path, const std::vector<std::string>& overrides = {});

@@ -4,7 +4,7 @@
 //     not felt:  z_p = max(nearest, z + margin),  F = 0             (the gap's pole p makes the margin a speed, p margin)
 //     felt:      z_p = z while there is force, else max(z_p, z + little),  F = wanted
 //
-// Felt is latched, by the peak of the force within a tick: a light tap averages to nothing over one; or by no progress against a push.
+// Felt is latched, by the peak of the force within a tick: a light tap averages to nothing over one.
 #pragma once
 
 #include "tenon/core/estimator.hpp"
