@@ -185,6 +185,7 @@ AssemblyProblem single_plan() {
   AssemblyProblem problem;
   problem.interval = 0.03;
   problem.intervals = 40;
+  problem.smoothing = 0.05;  // differences can still follow its third derivative
   problem.follow_hole = false;
   problem.hole = {0.9, 0, std::numbers::pi / 180 * problem.geometry.lever};
   return problem;
