@@ -8,11 +8,11 @@ namespace tenon {
 
 namespace {
 
-/// The first-order quantities at one x, dense.
+/// The first-order quantities at one x.
 struct FirstOrder {
   double objective;
   Vector gradient, constraints;
-  Eigen::MatrixXd jacobian;
+  SparseMatrix jacobian;
 };
 
 class Evaluator {
@@ -50,15 +50,16 @@ class Comparison {
   Comparison(std::string what, double tolerance, DerivativeReport& report, double& largest)
       : what_(std::move(what)), tolerance_(tolerance), report_(report), largest_(largest) {}
 
-  void add(const std::string& row, const std::string& variable, double analytic, double difference, double magnitude) {
+  /// `row` gives a name, which few entries need.
+  void add(const auto& row, const std::string& variable, double analytic, double difference, double magnitude) {
     if (!std::isfinite(analytic) || !std::isfinite(difference)) {
       report_.finite = false;
-      report_.worst.push_back({what_, row, variable, analytic, difference, kInfinity<double>});
+      report_.worst.push_back({what_, row(), variable, analytic, difference, kInfinity<double>});
       return;
     }
     const double error = std::abs(analytic - difference) / std::max({1.0, std::abs(analytic), magnitude});
     largest_ = std::max(largest_, error);
-    if (error > tolerance_) report_.worst.push_back({what_, row, variable, analytic, difference, error});
+    if (error > tolerance_) report_.worst.push_back({what_, row(), variable, analytic, difference, error});
   }
 
  private:
@@ -77,7 +78,8 @@ DerivativeReport check_derivatives(const Nlp& problem, const Vector& x, double s
   DerivativeReport report;
   Evaluator evaluate(problem);
   const FirstOrder here = evaluate.at(x);
-  const Eigen::MatrixXd hessian = evaluate.hessian(x, sigma, lambda);
+  const Eigen::MatrixXd hessian = evaluate.hessian(x, sigma, lambda), jacobian = here.jacobian;
+  const Vector scale = (sigma * here.gradient).cwiseAbs() + jacobian.cwiseAbs().transpose() * lambda.cwiseAbs();
   Comparison gradients("gradient", tolerance, report, report.gradient_error);
   Comparison jacobians("jacobian", tolerance, report, report.jacobian_error);
   Comparison hessians("hessian", tolerance, report, report.hessian_error);
@@ -91,15 +93,15 @@ DerivativeReport check_derivatives(const Nlp& problem, const Vector& x, double s
     const double width = ahead[j] - behind[j];
     const std::string variable = problem.variable_name(j);
 
-    gradients.add("", variable, here.gradient[j], (plus.objective - minus.objective) / width, std::abs(here.objective));
+    gradients.add([] { return std::string(); }, variable, here.gradient[j], (plus.objective - minus.objective) / width, std::abs(here.objective));
     for (int i = 0; i < m; ++i) {
-      jacobians.add(problem.constraint_name(i), variable, here.jacobian(i, j), (plus.constraints[i] - minus.constraints[i]) / width,
+      jacobians.add([&] { return problem.constraint_name(i); }, variable, jacobian(i, j), (plus.constraints[i] - minus.constraints[i]) / width,
                     std::abs(here.constraints[i]));
     }
     // d/dx_j of  sigma grad f + J' lambda
-    const Vector column = (sigma * (plus.gradient - minus.gradient) + (plus.jacobian - minus.jacobian).transpose() * lambda) / width;
-    const Vector scale = (sigma * here.gradient).cwiseAbs() + here.jacobian.cwiseAbs().transpose() * lambda.cwiseAbs();
-    for (int i = 0; i < n; ++i) hessians.add(problem.variable_name(i), variable, hessian(i, j), column[i], scale[i]);
+    const SparseMatrix change = plus.jacobian - minus.jacobian;
+    const Vector column = (sigma * (plus.gradient - minus.gradient) + change.transpose() * lambda) / width;
+    for (int i = 0; i < n; ++i) hessians.add([&] { return problem.variable_name(i); }, variable, hessian(i, j), column[i], scale[i]);
   }
 
   std::stable_sort(report.worst.begin(), report.worst.end(), [](const auto& a, const auto& b) { return a.error > b.error; });

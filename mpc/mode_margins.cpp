@@ -36,6 +36,13 @@ void check(const LinearMode& mode) {
   if (!(mode.period > 0) || mode.delay < 0) throw std::invalid_argument("mode " + mode.name + ": no period, or a negative delay");
 }
 
+/// In coordinates in which the mass is 1.
+LinearMode normalised(LinearMode mode) {
+  const MatrixXd root = Eigen::SelfAdjointEigenSolver<MatrixXd>(mode.mass).operatorInverseSqrt();
+  for (MatrixXd* m : {&mode.mass, &mode.stiffness, &mode.damping, &mode.contact_stiffness, &mode.contact_damping}) *m = root * *m * root;
+  return mode;
+}
+
 /// exp of [A B; 0 0] t: the flow of x' = A x + B u with u held.
 struct Held {
   MatrixXd a, b;
@@ -95,8 +102,9 @@ double largest(const std::function<bool(double)>& holds, double from, double fir
 
 }  // namespace
 
-ModeMargins mode_margins(const LinearMode& mode) {
-  check(mode);
+ModeMargins mode_margins(const LinearMode& given) {
+  check(given);
+  const LinearMode mode = normalised(given);
   ModeMargins margins;
   margins.stable = is_stable(mode, mode.delay, 1);
   margins.modulus = kInfinite;

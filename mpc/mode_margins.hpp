@@ -6,7 +6,8 @@
 //     x_{k+1} = A x_k + B_1 u_{k-d-1} + B_0 u_{k-d}             held inputs, a delay of d periods and a part of one             (3)
 //     Y(s) = s (M s^2 + D_c s + K_c + e^{-s T}(K + D s))^{-1}   what the outside feels; passive where Y + Y* >= 0               (4)
 //
-// Margins of delay and of contact stiffness are those at which (3), which knows the sampling, has an eigenvalue on the unit circle. A passive
+// Coordinates are scaled by the root of the mass first, so that the margin does not depend on the units of positions and angles:
+// (q, K) -> (M^{1/2} q, M^{-1/2} K M^{-1/2}).  Margins of delay and of contact stiffness are those at which (3), which knows the sampling, has an eigenvalue on the unit circle. A passive
 // port is stable against every passive environment [Colgate and Hogan 1988]; sampling and delay take that away above some frequency.
 #pragma once
 
