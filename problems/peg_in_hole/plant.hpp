@@ -51,6 +51,7 @@ class PegPlant final : public Plant {
   void outputs(VectorRef values) const override;
   int num_verdicts() const override;
   std::string verdict_name(int i) const override;
+  std::string severity() const override { return "largest_force"; }
   void verdicts(VectorRef values) const override;
   std::string measurement_name(int i) const override;
   std::string command_name(int i) const override;
