@@ -89,12 +89,6 @@ InsertionPlant::Contacts InsertionPlant::contacts(const Vector3d& pose, const Ve
   return out;
 }
 
-Vector3d InsertionPlant::spring(const Vector3d& seen_pose) const {
-  Vector3d force = stiffness_.cwiseProduct(reference_ - seen_pose);
-  force.head<2>() = force.head<2>().cwiseMax(-world_.largest_spring).cwiseMin(world_.largest_spring);
-  return force;
-}
-
 void InsertionPlant::measure_motion(const Vector3d& seen_pose, const Vector3d& seen_rate, VectorRef values) const {
   const double lever = world_.geometry.lever;
   values.segment<3>(kMeasuredPose) = to_si(seen_pose, lever);

@@ -68,8 +68,6 @@ class InsertionPlant : public Plant {
 
   Contacts contacts(const Vector3d& pose, const Vector3d& rate) const;
   bool is_sample() const { return steps_ % kStepsPerSample == 0; }
-  /// The inner loop's spring K (r - q), no harder than it may push, N.
-  Vector3d spring(const Vector3d& seen_pose) const;
   /// Pose, rate, reference and its rate; the force is left to the derived plant.
   void measure_motion(const Vector3d& seen_pose, const Vector3d& seen_rate, VectorRef values) const;
   /// Normal, of variance 1; zero where the seed is.

@@ -21,7 +21,9 @@ void PegPlant::sample() {
   for (int i = 0; i < 3; ++i) reading[i] = pose_[i] + world_.encoder_noise * noise();
   seen_.update(reading, kPeriod);
   const Vector3d damping = Impedance{world_.mass, stiffness_}.damping();
-  drive_ = spring(reading) + damping.cwiseProduct(reference_rate_ - seen_.rate());
+  Vector3d spring = stiffness_.cwiseProduct(reference_ - reading);
+  spring.head<2>() = spring.head<2>().cwiseMax(-world_.largest_spring).cwiseMin(world_.largest_spring);
+  drive_ = spring + damping.cwiseProduct(reference_rate_ - seen_.rate());
 }
 
 void PegPlant::step() {
