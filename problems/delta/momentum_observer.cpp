@@ -43,7 +43,7 @@ const Wrench& MomentumObserver::update(const Vector3& motors, const Vector3& gim
   readings_ = std::min(readings_ + 1, 3);
   if (readings_ < 3) return wrench_;
 
-  // M (z'_+ - z'_-)/T is (p_+ - p_-)/T - M' z'                                                                            (13.2)
+  // (13.2)
   const WristBalance balance = wrist_balance(robot_, constants_, at, wrist.rate, wrist.torque, Vector3::Zero());
   force_ += share_ * (balance.inertia * wrist.acceleration - balance.force - force_);
   wrench_.force = force_;

@@ -1,9 +1,9 @@
 // The wrench on the tool from what motors and gimbals read and push with: generalised momentum, and what of it nothing known accounts for.
 //
-//     p = M(z) z',    r = K [ p - int ( M' z' + known forces + r ) ]    =>    r' = K (f - r)                   (delta.md, section 13)
+//     rho = K [ M z' - int ( M' z' + known forces + rho ) ]    =>    rho' = K (f - rho)                        (delta.md, section 13)
 //
-// In the coordinates of the wrist and of the gimbals. r follows the force f from outside like a low-pass of 1/K, without an acceleration
-// measured or a mass matrix inverted. Asks for the robot's masses and friction: what those are wrong by shows as force. update() neither
+// In the coordinates of the wrist and of the gimbals. rho follows the force f from outside like a low-pass of 1/K, with no acceleration
+// measured and no mass matrix inverted. Asks for the robot's masses and friction: what those are wrong by shows as force. update() neither
 // allocates nor throws.
 #pragma once
 
@@ -31,12 +31,13 @@ class MomentumObserver {
   const Wrench& wrench() const { return wrench_; }
 
  private:
-  /// Of two updates or, of rates and torques, of the two periods that meet at the first.
+  /// A position, and the mean rate and the torque of the period that led to it.
   struct Reading {
     Vector3 position{0, 0, 0}, rate{0, 0, 0}, torque{0, 0, 0};
   };
+  /// At the reading before: means over the two periods that meet there, and what the rate changes by.
   struct Step {
-    Vector3 position, rate, torque, acceleration;  // at the reading before; means of the two periods about it
+    Vector3 position, rate, torque, acceleration;
   };
   Step take(Reading& before, const Vector3& position, const Vector3& torque) const;
 
@@ -48,7 +49,7 @@ class MomentumObserver {
   int readings_ = 0;
   Configuration at_;  // of the wrist's reading
   Reading wrist_, turned_;
-  Vector3 force_{0, 0, 0}, torque_{0, 0, 0};  // r, of wrist and gimbals
+  Vector3 force_{0, 0, 0}, torque_{0, 0, 0};  // rho, of wrist and gimbals
   Wrench wrench_;
 };
 
