@@ -43,7 +43,8 @@ class Pushed {
           {.angle = plant_.motors(), .rate = plant_.motor_rates(), .gimbal_angle = plant_.gimbals(), .gimbal_rate = plant_.gimbal_rates()});
       ASSERT_TRUE(plant_.step(command.torque, command.gimbal_torque, [&](const ToolMotion&) { return push; }));
       const AllocationCounter counter;
-      const Wrench& found = observer_.update(read_by(bits_, plant_.motors()), read_by(bits_, plant_.gimbals()), plant_.torque(), plant_.gimbal_torque());
+      const Wrench& found =
+          observer_.update(read_by(bits_, plant_.motors()), read_by(bits_, plant_.gimbals()), plant_.torque(), plant_.gimbal_torque());
       ASSERT_EQ(counter.count(), 0);
       check(k, found);
     }
@@ -90,7 +91,7 @@ TEST(MomentumObserver, RisesAsALowPassOfItsGain) {
   Pushed pushed(load_robot("delta"), 0, 0);
   pushed.run({}, 300, [](int, const Wrench&) {});
   pushed.run(kPush, 40, [](int k, const Wrench& found) {
-    const double share = -std::expm1(-0.2 * k);  // K T = 0.2
+    const double share = -std::expm1(-200 * kPeriod * k);
     EXPECT_NEAR(found.force[2] / kPush.force[2], share, 0.13) << "at tick " << k;  // half a period late
   });
 }

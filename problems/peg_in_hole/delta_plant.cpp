@@ -18,13 +18,13 @@ using delta::ToolMotion;
 using delta::Vector3;
 using delta::Wrench;
 
-constexpr double kMouth = 0.4;           // m: of the task's origin, below the base
+constexpr double kMouth = 0.4;  // m below the base: the task's origin
 constexpr int kEncoderBits = 20;
 constexpr double kFilterFrequency = 200;  // Hz, of the inner loop's rates
 
-constexpr std::array<const char*, 19> kOutputNames{"q11",     "q12",     "q13",       "q21",       "q22",       "q23",    "q31",
-                                                   "q32",     "q33",     "closure",   "torque1",   "torque2",   "torque3", "yaw",
-                                                   "pitch",   "roll",    "torque_yaw", "torque_pitch", "torque_roll"};
+constexpr std::array<const char*, 19> kOutputNames{"q11",   "q12",  "q13",        "q21",          "q22",        "q23",     "q31",
+                                                   "q32",   "q33",  "closure",    "torque1",      "torque2",    "torque3", "yaw",
+                                                   "pitch", "roll", "torque_yaw", "torque_pitch", "torque_roll"};
 
 /// Of the plane (x, z up; mm) in the robot's axes (z down; m), and back.
 Vector3 to_robot(double x, double z) {
@@ -41,22 +41,19 @@ Vector3d rate_in_plane(const ToolMotion& tool, double lever) {
   return {1e3 * tool.velocity[0], -1e3 * tool.velocity[2], lever * tool.angular_velocity[1]};
 }
 
-delta::PlantOptions micro_steps(double step) {
-  return {.period = step, .micro_step = step};
-}
-
 delta::ControllerOptions inner_loop(double period) {
   return {.law = {.form = delta::LawForm::impedance}, .period = period, .filter_frequency = kFilterFrequency};
 }
 
 }  // namespace
 
-DeltaPegPlant::DeltaPegPlant(const World& world, const delta::Robot& robot)
+DeltaPegPlant::DeltaPegPlant(const World& world, const delta::Robot& robot, const delta::Robot& believed)
     : InsertionPlant(world),
-      robot_(robot, micro_steps(kStep)),
-      controller_(robot, inner_loop(kPeriod)),
-      observer_(robot, {.period = kPeriod, .gain = 1 / world.force_filter}) {
-  if (!(robot.gimbal_inertia.minCoeff() > 0)) throw std::invalid_argument("robot " + robot.name + " has no gimbals (expected a spherical wrist)");
+      robot_(robot, {.period = kStep, .micro_step = kStep}),
+      controller_(believed, inner_loop(kPeriod)),
+      observer_(believed, {.period = kPeriod, .gain = 1 / world.force_filter}) {
+  if (!(robot.gimbal_inertia.minCoeff() > 0))
+    throw std::invalid_argument("robot " + robot.name + " has no gimbals (expected a spherical wrist)");
   const Vector3 start = to_robot(world.start[0], world.start[1]);
   if (!robot_.place(start, {0, world.start[2] / world.geometry.lever, 0}))
     throw std::invalid_argument(fmt::format("robot {} does not reach the peg's start at ({}, 0, {}) m", robot.name, start[0], start[2]));
@@ -71,13 +68,11 @@ void DeltaPegPlant::reset(std::uint64_t seed) {
   controller_.reset();
   observer_.reset();
   const delta::Configuration at(robot_.angles());
-  const Vector3 holding = gravity_torque(delta::ArmConstants(robot_.robot()), at, delta::Motion(robot_.robot(), at));
-  acting_ = coming_ = {.arms = holding};
-  see();
+  acting_ = coming_ = {.arms = gravity_torque(delta::ArmConstants(robot_.robot()), at, delta::Motion(robot_.robot(), at))};
   seen_.reset(pose_);
 }
 
-void DeltaPegPlant::see() {
+void DeltaPegPlant::read_encoders() {
   const Vector3 motors = robot_.motors(), gimbals = robot_.gimbals();
   for (int i = 0; i < 3; ++i) {
     reading_.angle[i] = delta::quantised(motors[i], kEncoderBits);
@@ -103,18 +98,19 @@ void DeltaPegPlant::schedule() {
 
 void DeltaPegPlant::sample() {
   const double lever = world_.geometry.lever;
-  see();
+  read_encoders();
   observer_.update(reading_.angle, reading_.gimbal_angle, acting_.arms, acting_.gimbals);
-  const delta::Forward forward = forward_kinematics(robot_.robot(), reading_.angle);
+  const delta::Forward forward = forward_kinematics(controller_.law().robot(), reading_.angle);
   seen_.update(to_plane(forward.wrist, reading_.gimbal_angle[1], lever), kPeriod);
 
   schedule();
   // no farther away than the spring may push
   const Eigen::Vector2d seen = seen_.reading().head<2>(), most = world_.largest_spring * stiffness_.head<2>().cwiseInverse();
   const Eigen::Vector2d wanted = reference_.head<2>().cwiseMax(seen - most).cwiseMin(seen + most);
-  controller_.set_reference({.position = to_robot(wanted[0], wanted[1]), .velocity = {1e-3 * reference_rate_[0], 0, -1e-3 * reference_rate_[1]}});
+  controller_.set_reference(
+      {.position = to_robot(wanted[0], wanted[1]), .velocity = {1e-3 * reference_rate_[0], 0, -1e-3 * reference_rate_[1]}});
   // K (r - q) + D (r' - q') of a law that has no r': K (r + D/K r' - q) - D q'
-  const double lead = damping_of_loop()[2] / stiffness_[2];
+  const double lead = stiffness_[2] > 0 ? damping_of_loop()[2] / stiffness_[2] : 0;
   controller_.set_tool_reference({0, (reference_[2] + lead * reference_rate_[2]) / lever, 0});
   acting_ = coming_;
   const delta::Command& command = controller_.tick(reading_);

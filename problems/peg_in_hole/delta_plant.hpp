@@ -1,6 +1,6 @@
 // A peg in a hole, held by the delta robot: its own dynamics, wrist and inner loop in place of the planar plant's mass and spring.
 //
-//     tau = tau_u + J_c' [ K (r - z) + D (r' - z') ]    of the arms,    a spring and a damper at each gimbal            (delta.md, section 7)
+//     tau = tau_u + J_c' [ K (r - z) + D (r' - z') ]  of the arms,   a spring and a damper at each gimbal       (delta.md, sections 7, 10)
 //
 // The task's plane is the robot's x-z plane, the mouth below the base's middle. The gimbals' axes meet at the peg's tip (a remote centre),
 // so that the impedance is the task's there. The loop reads 20-bit encoders once a millisecond, its torques act a tick later, and forces
@@ -16,9 +16,9 @@ namespace tenon::peg {
 
 class DeltaPegPlant final : public InsertionPlant {
  public:
-  /// Of the world's noises and masses only those of the impedance's damping count. Throws std::invalid_argument as the robot's parts do,
-  /// and where the robot has no gimbals or does not reach the peg's start.
-  DeltaPegPlant(const World& world, const delta::Robot& robot);
+  /// `believed` is the robot as its law and its observer know it. Of the world, noises do not count, and masses only for the impedance's
+  /// damping. Throws std::invalid_argument as the robot's parts do, and where it has no gimbals or does not reach the peg's start.
+  DeltaPegPlant(const World& world, const delta::Robot& robot, const delta::Robot& believed);
 
   void reset(std::uint64_t seed) override;
   void measure(VectorRef values) override;
@@ -33,11 +33,12 @@ class DeltaPegPlant final : public InsertionPlant {
   };
 
   void step() override;
+  /// The inner loop's tick.
   void sample();
-  Vector3d damping_of_loop() const;  // N s/mm
+  void read_encoders();
   /// The law's gains for the stiffness that is commanded.
   void schedule();
-  void see();
+  Vector3d damping_of_loop() const;  // N s/mm
 
   delta::Plant robot_;
   delta::Controller controller_;

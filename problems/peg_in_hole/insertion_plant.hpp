@@ -25,13 +25,13 @@ struct World {
   double contact_stiffness = 200;      // N/mm
   double contact_damping_ratio = 0.3;  // of one contact and the mass
   double friction = 0.2;
-  double friction_speed = 1;           // mm/s, v_0
-  double encoder_noise = 0.005;        // mm, sd
-  double force_noise = 0.1;            // N, sd
-  double largest_spring = 10.5;        // N, in x and z: the inner loop pushes no harder
-  double force_filter = 0.005;         // s
-  double success_depth = 19.8;         // mm
-  Vector3d start{0, 5, 0};             // mm
+  double friction_speed = 1;     // mm/s, v_0
+  double encoder_noise = 0.005;  // mm, sd
+  double force_noise = 0.1;      // N, sd
+  double largest_spring = 10.5;  // N, in x and z: the inner loop pushes no harder
+  double force_filter = 0.005;   // s
+  double success_depth = 19.8;   // mm
+  Vector3d start{0, 5, 0};       // mm
   HolePrior prior;
 };
 

@@ -21,7 +21,8 @@ constexpr double kMillimetre = 1e-3;   // m
 constexpr double kInnerPeriod = 1e-3;  // s, of the impedance loop
 
 std::optional<Table> plant_table(const Table& root) {
-  return root.table("plant", {"mass", "contact_stiffness", "contact_damping_ratio", "encoder_noise", "force_noise", "robot", "peg_mass", "peg_inertia"});
+  return root.table("plant", {"mass", "contact_stiffness", "contact_damping_ratio", "encoder_noise", "force_noise", "robot", "peg_mass",
+                              "peg_inertia", "unknown_mass"});
 }
 
 World read_world(const Table& root, const Table& parameters) {
@@ -48,18 +49,25 @@ World read_world(const Table& root, const Table& parameters) {
   return world;
 }
 
-/// Who holds the peg, and with it; none: the planar plant's mass.
-std::optional<delta::Robot> read_robot(const Table& root) {
+/// The delta that holds the peg, and as it knows itself.
+struct Holder {
+  delta::Robot robot, believed;
+};
+
+/// None: the planar plant's mass and spring.
+std::optional<Holder> read_holder(const Table& root) {
   const auto table = plant_table(root);
   if (!table || !table->has("robot")) return std::nullopt;
   delta::Robot robot = delta::load_robot(table->text("robot"));
   robot.payload += not_negative(*table, "peg_mass", 0.3);
   robot.gimbal_inertia[2] += not_negative(*table, "peg_inertia", 1.7e-4);
-  return robot;
+  Holder holder{robot, robot};
+  holder.robot.payload += not_negative(*table, "unknown_mass", 0);
+  return holder;
 }
 
-std::unique_ptr<Plant> make_plant(const World& world, const std::optional<delta::Robot>& robot) {
-  if (robot) return std::make_unique<DeltaPegPlant>(world, *robot);
+std::unique_ptr<Plant> make_plant(const World& world, const std::optional<Holder>& holder) {
+  if (holder) return std::make_unique<DeltaPegPlant>(world, holder->robot, holder->believed);
   return std::make_unique<PegPlant>(world);
 }
 
@@ -85,7 +93,7 @@ ControlTask make_task(const toml_file::Document& document) {
   const Table parameters = required_table(
       root, "parameters", {"clearance", "friction", "offset_x", "offset_z", "offset_theta", "rate", "iterations", "duration"});
   const World world = read_world(root, parameters);
-  const std::optional<delta::Robot> robot = read_robot(root);
+  const std::optional<Holder> holder = read_holder(root);
   const AssemblyProblem problem = read_horizon(root, world);
   // What is believed: the hole in the middle of what it was drawn from, without the scene's own offset.
   HoleEstimatorOptions belief{.geometry = world.geometry, .prior = {.half_width = world.prior.half_width}};
@@ -95,7 +103,7 @@ ControlTask make_task(const toml_file::Document& document) {
   ControlTask task;
   task.period = 1 / positive(parameters, "rate", 50);
   task.duration = positive(parameters, "duration", 5);
-  task.plant = make_plant(world, robot);
+  task.plant = make_plant(world, holder);
   task.program = std::make_unique<AssemblyProgram>(problem);
   task.estimator = std::make_unique<HoleEstimator>(belief);
   // The rows are well scaled as they are; a plan that is 0.5 mm or N off still moves the peg the right way.
@@ -112,12 +120,12 @@ ControlTask make_task(const toml_file::Document& document) {
   task.baselines.push_back({"straight", std::make_unique<StraightDown>(world.geometry, problem.impedance, world.start, problem.depth, task.period)});
   task.baselines.push_back({"soft", std::make_unique<StraightDown>(world.geometry, soft, world.start, problem.depth, task.period)});
   task.baselines.push_back({"tilt", std::make_unique<TiltAndSlide>(world.geometry, problem.impedance, world.start, problem.depth, task.period)});
-  task.modes = linear_modes(world, problem.impedance, kInnerPeriod, robot ? kInnerPeriod : 0);
-  task.capture = {"offset of the hole, m", kMillimetre * 5, [world, robot](double offset) {
+  task.modes = linear_modes(world, problem.impedance, kInnerPeriod, holder ? kInnerPeriod : 0);
+  task.capture = {"offset of the hole, m", kMillimetre * 5, [world, holder](double offset) {
                     World beside = world;
                     beside.prior.middle[0] += offset / kMillimetre;
                     beside.prior.half_width[0] = 0;
-                    return make_plant(beside, robot);
+                    return make_plant(beside, holder);
                   }};
   task.scenery = scenery_of(world.geometry);
   return task;
