@@ -123,8 +123,8 @@ TEST(DeltaPeg, RepeatsARunBitForBit) {
 }
 
 TEST(DeltaPeg, TellsWhatIsWrongWithItsRobot) {
-  EXPECT_MESSAGE(tenon::make_task("peg-in-hole-delta", {"plant.robot=\"detla\""}), std::invalid_argument, "delta");
-  EXPECT_MESSAGE(tenon::make_task("peg-in-hole-delta", {"plant.robot=\"delta-demo\""}), std::invalid_argument, "no gimbals");
+  EXPECT_MESSAGE(tenon::make_task("peg-in-hole-delta", {"plant.robot=\"detla\""}), InputError, "plant.robot");
+  EXPECT_MESSAGE(tenon::make_task("peg-in-hole-delta", {"plant.robot=\"delta-demo\""}), InputError, "no gimbals");
   EXPECT_MESSAGE(tenon::make_task("peg-in-hole-delta", {"plant.peg_mass=-1"}), InputError, "peg_mass is -1");
 }
 

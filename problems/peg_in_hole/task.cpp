@@ -1,5 +1,7 @@
 #include "tenon/problems/peg_in_hole/task.hpp"
 
+#include <stdexcept>
+
 #include "tenon/problems/delta/robot_file.hpp"
 #include "tenon/problems/peg_in_hole/assembly_program.hpp"
 #include "tenon/problems/peg_in_hole/baselines.hpp"
@@ -55,15 +57,20 @@ struct Holder {
 };
 
 /// None: the planar plant's mass and spring.
-std::optional<Holder> read_holder(const Table& root) {
+std::optional<Holder> read_holder(const Table& root, const World& world) {
   const auto table = plant_table(root);
   if (!table || !table->has("robot")) return std::nullopt;
-  delta::Robot robot = delta::load_robot(table->text("robot"));
-  robot.payload += not_negative(*table, "peg_mass", 0.3);
-  robot.gimbal_inertia[2] += not_negative(*table, "peg_inertia", 1.7e-4);
-  Holder holder{robot, robot};
-  holder.robot.payload += not_negative(*table, "unknown_mass", 0);
-  return holder;
+  try {
+    delta::Robot robot = delta::load_robot(table->text("robot"));
+    robot.payload += not_negative(*table, "peg_mass", 0.3);
+    robot.gimbal_inertia[2] += not_negative(*table, "peg_inertia", 1.7e-4);
+    Holder holder{robot, robot};
+    holder.robot.payload += not_negative(*table, "unknown_mass", 0);
+    const DeltaPegPlant trial(world, holder.robot, holder.believed);  // says here, with the place, what a robot lacks
+    return holder;
+  } catch (const std::invalid_argument& error) {
+    throw InputError(table->position("robot"), error.what());
+  }
 }
 
 std::unique_ptr<Plant> make_plant(const World& world, const std::optional<Holder>& holder) {
@@ -93,7 +100,7 @@ ControlTask make_task(const toml_file::Document& document) {
   const Table parameters = required_table(
       root, "parameters", {"clearance", "friction", "offset_x", "offset_z", "offset_theta", "rate", "iterations", "duration"});
   const World world = read_world(root, parameters);
-  const std::optional<Holder> holder = read_holder(root);
+  const std::optional<Holder> holder = read_holder(root, world);
   const AssemblyProblem problem = read_horizon(root, world);
   // What is believed: the hole in the middle of what it was drawn from, without the scene's own offset.
   HoleEstimatorOptions belief{.geometry = world.geometry, .prior = {.half_width = world.prior.half_width}};
