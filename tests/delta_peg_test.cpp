@@ -19,9 +19,9 @@ namespace {
 /// A scene's closed loop, and the columns of its record by name.
 class Loop {
  public:
-  explicit Loop(const std::string& scene, const std::vector<std::string>& overrides = {}, const std::string& name = "mpc")
+  explicit Loop(const std::string& scene, const std::vector<std::string>& overrides = {})
       : task_(tenon::make_task(scene, overrides)),
-        controller_(take_controller(task_, name, make_newton_kkt)),
+        controller_(take_controller(task_, "mpc", make_newton_kkt)),
         loop_(*task_.plant, *controller_, task_.duration),
         columns_(loop_.columns()) {}
 
