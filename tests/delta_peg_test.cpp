@@ -90,7 +90,7 @@ TEST(DeltaPeg, ClosesItsLoopsAndStaysWithinItsTorques) {
   EXPECT_GE(most, 0.5) << "the arms carry their weight";
 }
 
-/// Held still 1 mm into the flat: the peg rests on its spring, at K (r - q) = F.
+/// The reference held still 2 mm below the flat: the peg rests on its spring, at K (r - q) = F.
 TEST(DeltaPeg, EstimatesAContactForceAtRest) {
   ControlTask task = tenon::make_task("peg-in-hole-delta", {"offset_x=0.005"});
   Vector command = Vector::Zero(kCommands), y(kMeasurements), truth(task.plant->num_outputs());
