@@ -74,6 +74,8 @@ class Controller {
   void set_reference(const Reference& reference) { reference_ = reference; }
   /// Of the gimbals, rad; holds until the next call.
   void set_tool_reference(const Vector3& angle) { tool_reference_ = angle; }
+  /// The law's gains, where they are scheduled; holds until the next call.
+  void set_law(const LawOptions& options) { law_.set_options(options); }
 
   const Command& tick(const Measurement& measurement);
 

@@ -75,6 +75,9 @@ class Law {
   Law(const Robot& robot, const LawOptions& options)
       : robot_(robot), constants_(robot), gimbals_{robot.gimbal_inertia}, options_(options) {}
 
+  /// Gains may change from tick to tick.
+  void set_options(const LawOptions& options) { options_ = options; }
+
   /// `integral` is int(r - z), m s. Without torque limits. Asks for sensed.ok.
   LawTorque torque(const Sensed& sensed, const Reference& reference, const Vector3& integral) const;
   /// Of the gimbals, from their angles (rad), rates (rad/s) and where they should be. Without torque limits.

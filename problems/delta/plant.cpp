@@ -46,6 +46,7 @@ bool Plant::place(const Vector3& wrist, const Vector3& gimbals, const Vector3& v
   if (!has_gimbals_) start.velocity.tail<3>().setZero();
   if (!acceleration(start, pose(start), {}).allFinite()) return false;
   state_ = start;
+  torque_.setZero(), gimbal_torque_.setZero();
   return true;
 }
 

@@ -1,9 +1,8 @@
 // The discrete part of a scene: contacts that begin and end, the controller's clock; and what the record shows.
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "tenon/problems/delta/encoder.hpp"
 #include "tenon/problems/delta/scene_dae.hpp"
 
 namespace tenon::delta {
@@ -17,12 +16,6 @@ constexpr int kHeldState =
 constexpr int kHeldSaturated = kHeldState + ControllerState::kSize;
 constexpr int kHeldTicks = kHeldSaturated + 1;
 constexpr int kHeldQueue = kHeldTicks + 1;
-
-double quantised(double angle, int bits) {
-  if (bits == 0) return angle;
-  const double step = 2 * std::numbers::pi / std::ldexp(1.0, bits);
-  return std::round(angle / step) * step;
-}
 
 }  // namespace
 

@@ -22,10 +22,9 @@ Vector9 rates_of_wrist(const Robot& robot, const Configuration& at, const Vector
   return v;
 }
 
-Vector3 wrist_acceleration(const Robot& robot, const ArmConstants& k, const Configuration& at, const Vector3& velocity, const Vector3& u,
+WristBalance wrist_balance(const Robot& robot, const ArmConstants& k, const Configuration& at, const Vector3& velocity, const Vector3& u,
                            const Vector3& f) {
-  Matrix3 inertia = Matrix3::Zero();
-  Vector3 force = f;
+  WristBalance out{.force = f};
   for (int i = 0; i < kArms; ++i) {
     const Matrix3 p_inverse = turning(robot, at[i]);
     Matrix3 t;
@@ -34,10 +33,16 @@ Vector3 wrist_acceleration(const Robot& robot, const ArmConstants& k, const Conf
     const Vector3 v = t * velocity;
     Vector3 torque = m * Vector3(p_inverse * at[i].bias(robot, v)) - coriolis(k, at[i], v) - k.damping.cwiseProduct(v) - gravity(k, at[i]);
     torque[0] += u[i];
-    for (int c = 0; c < 3; ++c) inertia.col(c).noalias() += t.transpose() * (m * Vector3(t.col(c)));
-    force.noalias() += t.transpose() * torque;
+    for (int c = 0; c < 3; ++c) out.inertia.col(c).noalias() += t.transpose() * (m * Vector3(t.col(c)));
+    out.force.noalias() += t.transpose() * torque;
   }
-  return inertia.llt().solve(force);
+  return out;
+}
+
+Vector3 wrist_acceleration(const Robot& robot, const ArmConstants& k, const Configuration& at, const Vector3& velocity, const Vector3& u,
+                           const Vector3& f) {
+  const WristBalance balance = wrist_balance(robot, k, at, velocity, u, f);
+  return balance.inertia.llt().solve(balance.force);
 }
 
 }  // namespace tenon::delta

@@ -14,6 +14,14 @@ namespace tenon::delta {
 /// v of all nine angles (rad/s) where the wrist moves at `velocity` (m/s).
 Vector9 rates_of_wrist(const Robot& robot, const Configuration& at, const Vector3& velocity);
 
+/// Of [ inertia ] z'' = force: what the bracket and the right side above are.
+struct WristBalance {
+  Matrix3 inertia = Matrix3::Zero();  // kg
+  Vector3 force{0, 0, 0};             // N
+};
+WristBalance wrist_balance(const Robot& robot, const ArmConstants& k, const Configuration& at, const Vector3& velocity, const Vector3& u,
+                           const Vector3& f);
+
 /// z'' (m/s^2) under the motors' torques u (N m) and the force f on the wrist (N, world axes).
 Vector3 wrist_acceleration(const Robot& robot, const ArmConstants& k, const Configuration& at, const Vector3& velocity, const Vector3& u,
                            const Vector3& f);

@@ -1,8 +1,12 @@
 #include "tenon/problems/peg_in_hole/task.hpp"
 
+#include <stdexcept>
+
+#include "tenon/problems/delta/robot_file.hpp"
 #include "tenon/problems/peg_in_hole/assembly_program.hpp"
 #include "tenon/problems/peg_in_hole/baselines.hpp"
 #include "tenon/problems/peg_in_hole/channels.hpp"
+#include "tenon/problems/peg_in_hole/delta_plant.hpp"
 #include "tenon/problems/peg_in_hole/hole_estimator.hpp"
 #include "tenon/problems/peg_in_hole/modes.hpp"
 #include "tenon/problems/peg_in_hole/plant.hpp"
@@ -18,6 +22,11 @@ using toml_file::Table;
 constexpr double kMillimetre = 1e-3;   // m
 constexpr double kInnerPeriod = 1e-3;  // s, of the impedance loop
 
+std::optional<Table> plant_table(const Table& root) {
+  return root.table("plant", {"mass", "contact_stiffness", "contact_damping_ratio", "encoder_noise", "force_noise", "robot", "peg_mass",
+                              "peg_inertia", "unknown_mass"});
+}
+
 World read_world(const Table& root, const Table& parameters) {
   World world;
   const double lever = world.geometry.lever;
@@ -30,7 +39,7 @@ World read_world(const Table& root, const Table& parameters) {
     const Vector3d half(not_negative(*table, "x", 0), not_negative(*table, "z", 0), not_negative(*table, "theta", 0));
     world.prior.half_width = to_millimetres(half, lever);
   }
-  if (const auto table = root.table("plant", {"mass", "contact_stiffness", "contact_damping_ratio", "encoder_noise", "force_noise"})) {
+  if (const auto table = plant_table(root)) {
     world.mass = table->vector3("mass", {0.8, 0.8, 3e-4});
     if (!(world.mass.minCoeff() > 0)) throw InputError(table->position("mass"), "a mass is not positive", "more than 0");
     world.mass[2] /= lever * lever * kMillimetre * kMillimetre;
@@ -40,6 +49,33 @@ World read_world(const Table& root, const Table& parameters) {
     world.force_noise = not_negative(*table, "force_noise", world.force_noise);
   }
   return world;
+}
+
+/// The delta that holds the peg, and as it knows itself.
+struct Holder {
+  delta::Robot robot, believed;
+};
+
+/// None: the planar plant's mass and spring.
+std::optional<Holder> read_holder(const Table& root, const World& world) {
+  const auto table = plant_table(root);
+  if (!table || !table->has("robot")) return std::nullopt;
+  try {
+    delta::Robot robot = delta::load_robot(table->text("robot"));
+    robot.payload += not_negative(*table, "peg_mass", 0.3);
+    robot.gimbal_inertia[2] += not_negative(*table, "peg_inertia", 1.7e-4);
+    Holder holder{robot, robot};
+    holder.robot.payload += not_negative(*table, "unknown_mass", 0);
+    const DeltaPegPlant trial(world, holder.robot, holder.believed);  // says here, with the place, what a robot lacks
+    return holder;
+  } catch (const std::invalid_argument& error) {
+    throw InputError(table->position("robot"), error.what());
+  }
+}
+
+std::unique_ptr<Plant> make_plant(const World& world, const std::optional<Holder>& holder) {
+  if (holder) return std::make_unique<DeltaPegPlant>(world, holder->robot, holder->believed);
+  return std::make_unique<PegPlant>(world);
 }
 
 AssemblyProblem read_horizon(const Table& root, const World& world) {
@@ -64,6 +100,7 @@ ControlTask make_task(const toml_file::Document& document) {
   const Table parameters = required_table(
       root, "parameters", {"clearance", "friction", "offset_x", "offset_z", "offset_theta", "rate", "iterations", "duration"});
   const World world = read_world(root, parameters);
+  const std::optional<Holder> holder = read_holder(root, world);
   const AssemblyProblem problem = read_horizon(root, world);
   // What is believed: the hole in the middle of what it was drawn from, without the scene's own offset.
   HoleEstimatorOptions belief{.geometry = world.geometry, .prior = {.half_width = world.prior.half_width}};
@@ -73,7 +110,7 @@ ControlTask make_task(const toml_file::Document& document) {
   ControlTask task;
   task.period = 1 / positive(parameters, "rate", 50);
   task.duration = positive(parameters, "duration", 5);
-  task.plant = std::make_unique<PegPlant>(world);
+  task.plant = make_plant(world, holder);
   task.program = std::make_unique<AssemblyProgram>(problem);
   task.estimator = std::make_unique<HoleEstimator>(belief);
   // The rows are well scaled as they are; a plan that is 0.5 mm or N off still moves the peg the right way.
@@ -90,12 +127,12 @@ ControlTask make_task(const toml_file::Document& document) {
   task.baselines.push_back({"straight", std::make_unique<StraightDown>(world.geometry, problem.impedance, world.start, problem.depth, task.period)});
   task.baselines.push_back({"soft", std::make_unique<StraightDown>(world.geometry, soft, world.start, problem.depth, task.period)});
   task.baselines.push_back({"tilt", std::make_unique<TiltAndSlide>(world.geometry, problem.impedance, world.start, problem.depth, task.period)});
-  task.modes = linear_modes(world, problem.impedance, kInnerPeriod, 0);
-  task.capture = {"offset of the hole, m", kMillimetre * 5, [world](double offset) {
+  task.modes = linear_modes(world, problem.impedance, kInnerPeriod, holder ? kInnerPeriod : 0);
+  task.capture = {"offset of the hole, m", kMillimetre * 5, [world, holder](double offset) {
                     World beside = world;
                     beside.prior.middle[0] += offset / kMillimetre;
                     beside.prior.half_width[0] = 0;
-                    return std::make_unique<PegPlant>(beside);
+                    return make_plant(beside, holder);
                   }};
   task.scenery = scenery_of(world.geometry);
   return task;
