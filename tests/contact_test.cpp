@@ -163,6 +163,30 @@ TEST(Cradle, EachImpactLawGivesItsOutcome) {
   EXPECT_NEAR(cradle_outcome(ImpactLaw::hertz)[4], .9887774241, 1e-6);
 }
 
+// A solid disc lands sliding: A_nn = 1/m, A_tt = 1/m + r^2/J = 3/m. The normal impulse is (1 + e) m v; the tangent slides on it or comes to
+// a stop. Where a body turns about the normal's impulse too (A_nt) the work still is what the kinetic energy changes by.
+TEST(Friction, OfACompliantImpactSlidesOrSticks) {
+  const double e = 0.5, v = 2, mass = 0.4, mu = 0.3;
+  const std::vector<contact::Touching> disc{{.restitution = e, .friction = mu}};
+  for (const double coupling : {0.0, 0.8}) {
+    const Eigen::MatrixXd A = (Eigen::MatrixXd(2, 2) << 1, coupling, coupling, 3).finished() / mass;
+    for (const double slip : {0.5, 2.0, 5.0, -5.0}) {
+      const Vector before = (Vector(2) << -v, slip).finished();
+      const auto phase = contact::resolve(ImpactLaw::compliant, A, before, disc, 1);
+      ASSERT_TRUE(phase.failure.empty());
+      const double cone = mu * phase.impulses[0];
+      EXPECT_LE(std::abs(phase.impulses[1]), cone * (1 + 1e-9)) << slip;
+      const double energy = 0.5 * (phase.rates.dot(A.inverse() * phase.rates) - before.dot(A.inverse() * before));
+      EXPECT_NEAR(phase.works.sum(), energy, 1e-12) << slip;
+      EXPECT_NEAR(phase.events.front().work, energy, 1e-12) << slip;
+      if (coupling != 0) continue;
+      EXPECT_NEAR(phase.rates[0], e * v, 1e-6) << slip;
+      EXPECT_NEAR(cone, mu * (1 + e) * mass * v, 1e-6) << slip;
+      EXPECT_NEAR(phase.rates[1], std::abs(slip) <= 3 * cone / mass ? 0 : slip - std::copysign(3 * cone / mass, slip), 1e-6) << slip;
+    }
+  }
+}
+
 TEST(BoxInCorner, RestsOnExactForcesAndItsPeakIsTheLaws) {
   std::vector<double> peaks;
   for (const double rtol : {1e-6, 1e-8, 1e-10}) {

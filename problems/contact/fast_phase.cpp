@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tenon::contact {
 
@@ -59,7 +60,7 @@ class Resolution {
   /// Every touching contact a spring and damper of its own:  lambda = m (w^2 delta^power + 2 zeta w deltadot), while it is positive.
   FastPhase compliant(double power) {
     const int k = k_;
-    Vector stiffness(k), damping(k), delta = Vector::Zero(k), rates = out_.rates.head(k);
+    Vector stiffness(k), damping(k), delta = Vector::Zero(k);
     const Matrix A = A_.topLeftCorner(k, k);
     double shortest = touching_.front().contact_time;
     for (int i = 0; i < k; ++i) {
@@ -70,43 +71,39 @@ class Resolution {
       shortest = std::min(shortest, t.contact_time);
     }
     // Hertz's spring as stiff as the linear one where the linear one would be deepest
-    const double speed = std::max(1e-12, -rates.minCoeff());
+    const double speed = std::max(1e-12, -out_.rates.head(k).minCoeff());
     if (power != 1) {
       for (int i = 0; i < k; ++i) stiffness[i] /= std::pow(speed * shortest / 4, power - 1);
     }
     const auto forces = [&](const Vector& d, const Vector& w, Vector& lambda) {
       for (int i = 0; i < k; ++i) {
-        const double f = d[i] > 0 ? stiffness[i] * std::pow(d[i], power) -
-                                        damping[i] * w[i] * (power == 1 ? 1 : std::pow(d[i] / (speed * shortest / 4), power - 1))
-                                  : 0;
+        const double f = d[i] >= 0 ? stiffness[i] * std::pow(d[i], power) -
+                                         damping[i] * w[i] * (power == 1 ? 1 : std::pow(d[i] / (speed * shortest / 4), power - 1))
+                                   : 0;
         lambda[i] = std::max(f, 0.0);
       }
     };
     const double h = shortest / kStepsOfAContact;
-    Vector l1(k), l2(k), l3(k), l4(k), d(k), w(k);
-    const Vector before = rates, start = out_.rates;
+    Vector l1(k), l2(k), l3(k), l4(k), d(k), w(k), w1(k), w2(k), w3(k), p = Vector::Zero(out_.rates.size());
+    const Vector before = out_.rates;
     for (long step = 0; step < static_cast<long>(kMostContactTimes * kStepsOfAContact); ++step) {
-      forces(delta, rates, l1);
-      if (step > 0 && l1.maxCoeff() <= 0 && rates.minCoeff() >= -kStandsStill) {
+      w1 = out_.rates.head(k);
+      forces(delta, w1, l1);
+      if (step > 0 && l1.maxCoeff() <= 0 && w1.minCoeff() >= -kStandsStill) {
         finish_compliant(before, static_cast<double>(step) * h);
         return std::move(out_);
       }
       // classical Runge-Kutta on deltadot = -w, wdot = A lambda
-      const Vector w1 = rates;
-      d = delta - 0.5 * h * w1, w = rates + 0.5 * h * (A * l1);
-      forces(d, w, l2);
-      const Vector w2 = w;
-      d = delta - 0.5 * h * w2, w = rates + 0.5 * h * (A * l2);
-      forces(d, w, l3);
-      const Vector w3 = w;
-      d = delta - h * w3, w = rates + h * (A * l3);
+      d = delta - 0.5 * h * w1, w2 = w1 + 0.5 * h * (A * l1);
+      forces(d, w2, l2);
+      d = delta - 0.5 * h * w2, w3 = w1 + 0.5 * h * (A * l2);
+      forces(d, w3, l3);
+      d = delta - h * w3, w = w1 + h * (A * l3);
       forces(d, w, l4);
-      const Vector lambda = (l1 + 2 * l2 + 2 * l3 + l4) / 6;
       delta -= h / 6 * (w1 + 2 * w2 + 2 * w3 + w);
-      rates += h * (A * lambda);
-      out_.impulses.head(k) += h * lambda;
-      out_.works.head(k) += h * lambda.cwiseProduct(rates - 0.5 * h * (A * lambda));
-      out_.rates = start + A_.leftCols(k) * out_.impulses.head(k);
+      p.head(k) = h / 6 * (l1 + 2 * l2 + 2 * l3 + l4);
+      add_impulse(p);
+      for (int i = 0; i < k && tangents_ > 0; ++i) rub(i, p[i]);
     }
     out_.failure = "the compliant fast phase does not end within " + std::to_string(static_cast<int>(kMostContactTimes)) + " contact times";
     return std::move(out_);
@@ -115,10 +112,33 @@ class Resolution {
  private:
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+  int tangent_of(int i) const { return k_ + i * tangents_; }  // its first row
+
+  /// The work of an impulse over a velocity that changes linearly with it; returns that of all rows.
+  double add_impulse(const Vector& p) {
+    const Vector after = out_.rates + A_ * p, works = 0.5 * p.cwiseProduct(out_.rates + after);
+    out_.rates = after;
+    out_.impulses += p;
+    out_.works += works;
+    return works.sum();
+  }
+
+  /// The tangential impulse that stops contact i, as far as Coulomb's cone over this normal impulse reaches.
+  void rub(int i, double normal) {
+    const double most = touching_[at(i)].friction * normal;
+    if (!(most > 0)) return;
+    const int t = tangent_of(i);
+    const Vector stop = least_norm(A_.block(t, t, tangents_, tangents_), -out_.rates.segment(t, tangents_));
+    Vector p = Vector::Zero(out_.rates.size());
+    p.segment(t, tangents_) = stop * std::min(1.0, most / std::max(stop.norm(), std::numeric_limits<double>::min()));
+    add_impulse(p);
+  }
+
   void finish_compliant(const Vector& before, double time) {
-    for (int i = 0; i < before.size(); ++i) {
+    for (int i = 0; i < k_; ++i) {
       out_.is_held[at(i)] = 0;
-      if (out_.impulses[i] > 0) out_.events.push_back({i, time, before[i], out_.rates[i], out_.impulses[i], out_.works[i]});
+      const double work = out_.works[i] + out_.works.segment(tangent_of(i), tangents_).sum();
+      if (out_.impulses[i] > 0) out_.events.push_back({i, time, before[i], out_.rates[i], out_.impulses[i], work});
     }
   }
 
@@ -151,7 +171,7 @@ class Resolution {
       }
       const auto slips = std::find_if(chosen.begin(), chosen.end(), [&](int i) {
         return tangent[at(i)] == Tangent::sticks &&
-               p.segment(k_ + i * tangents_, tangents_).norm() > touching_[at(i)].friction * p[i] * (1 + 1e-9);
+               p.segment(tangent_of(i), tangents_).norm() > touching_[at(i)].friction * p[i] * (1 + 1e-9);
       });
       if (slips == chosen.end()) return apply(n, p, e);
       tangent[at(*slips)] = Tangent::slides;
@@ -167,8 +187,8 @@ class Resolution {
     for (const int i : chosen) {
       Vector unit = Vector::Unit(size, i);
       if (tangent[at(i)] == Tangent::slides) {
-        const auto slip = out_.rates.segment(k_ + i * tangents_, tangents_);
-        if (slip.norm() > 0) unit.segment(k_ + i * tangents_, tangents_) = -touching_[at(i)].friction * slip.normalized();
+        const auto slip = out_.rates.segment(tangent_of(i), tangents_);
+        if (slip.norm() > 0) unit.segment(tangent_of(i), tangents_) = -touching_[at(i)].friction * slip.normalized();
       }
       target[static_cast<int>(rows.size())] = i == n ? -(1 + e) * out_.rates[n] : -out_.rates[i];
       rows.push_back(i);
@@ -176,7 +196,7 @@ class Resolution {
     }
     for (const int i : chosen) {
       if (tangent[at(i)] != Tangent::sticks) continue;
-      for (int t = k_ + i * tangents_; t < k_ + (i + 1) * tangents_; ++t) {
+      for (int t = tangent_of(i); t < tangent_of(i + 1); ++t) {
         target[static_cast<int>(rows.size())] = -out_.rates[t];
         rows.push_back(t);
         along.push_back(Vector::Unit(size, t));
@@ -195,14 +215,9 @@ class Resolution {
   }
 
   void apply(int n, const Vector& impulse, double e) {
-    const Vector after = out_.rates + A_ * impulse;
-    // the work of an impulse over a velocity that changes linearly with it
-    const Vector works = 0.5 * impulse.cwiseProduct(out_.rates + after);
+    const double before = out_.rates[n], work = add_impulse(impulse);
     time_ += touching_[at(n)].contact_time;
-    out_.events.push_back({n, time_, out_.rates[n], after[n], impulse[n], works.sum()});
-    out_.rates = after;
-    out_.impulses += impulse;
-    out_.works += works;
+    out_.events.push_back({n, time_, before, out_.rates[n], impulse[n], work});
     if (e == 0) {
       out_.is_held[at(n)] = 1;
       out_.rates[n] = 0;

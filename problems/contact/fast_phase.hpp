@@ -7,7 +7,7 @@
 // p_n.   (16) A held contact that would have to pull lets go, and the collision is taken again without it. Where all that still closes is
 // slower than its rest_speed, the rest of the phase is one blow without rebound:  p >= 0, w + A p >= 0, p'(w + A p) = 0.   (17) With
 // friction the rows of the normals are followed by those of the tangents, `tangents` for each contact: they stick where |p_t| <= mu p_n
-// allows, else p_t = mu p_n against the sliding. Laws: see ImpactLaw in scene.hpp.
+// allows, else p_t = mu p_n against the sliding; `compliant` asks so at each of its steps. Laws: see ImpactLaw in scene.hpp.
 #pragma once
 
 #include <functional>
