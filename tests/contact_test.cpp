@@ -36,6 +36,65 @@ TEST(Law, FollowsFromRestitutionAndContactTime) {
   }
 }
 
+// beta0 = 0: e depends on zeta_c = beta1 beta3^-1/4 v^-1/2 alone: MODELS.md, section 3.
+TEST(Law, WithACubicSpringSettlesSlowCollisions) {
+  const double expected[][2] = {{0.1, .835445332574}, {1, .181401620746}};
+  for (const auto& [zeta, e] : expected) {
+    for (const double stiffness : {1.0, 1e8}) {
+      const double v = 0.7, beta1 = zeta * std::pow(stiffness, 0.25) * std::sqrt(v);
+      const contact::Law law{0, beta1, stiffness};
+      EXPECT_NEAR(contact::rebound_of(law, v).restitution, e, 1e-10) << zeta;
+      const auto path = contact::collision_path(law, v, 50);
+      EXPECT_NEAR(path.back().rate, e * v, 1e-10) << zeta;
+      EXPECT_NEAR(path.back().acceleration / path[25].acceleration, 0, 1e-9) << zeta;
+      const Eigen::MatrixXd A = Eigen::MatrixXd::Constant(1, 1, 1 / 0.3);
+      const std::vector<contact::Touching> touching{{.collision = law}};
+      for (const ImpactLaw impact : {ImpactLaw::sequential, ImpactLaw::compliant})
+        EXPECT_NEAR(contact::resolve(impact, A, Vector::Constant(1, -v), touching).rates[0], e * v, 1e-7) << zeta;
+    }
+  }
+  // a spring of both terms, without damping, gives back what it was given; with a cubic term of nothing it is the linear one
+  EXPECT_NEAR(contact::rebound_of({1e4, 0, 1e8}, 2).restitution, 1, 1e-10);
+  const contact::Rebound linear = contact::rebound_of({1e4, 20, 0}, 2), nearly = contact::rebound_of({1e4, 20, 1e-12}, 2);
+  EXPECT_NEAR(nearly.restitution, linear.restitution, 1e-9);
+  EXPECT_NEAR(nearly.time, linear.time, 1e-9 * linear.time);
+}
+
+TEST(BouncingBallRestitution, ReboundsByACubicLawTheLessTheSlowerItComes) {
+  const SceneRun run = run_scene(contact::parse_scene(R"(
+      [simulation]
+      gravity = [-9.81, 0.0]
+      duration = 2.0
+      [[body]]
+      name = "ball"
+      kind = "line"
+      mass = 1.0
+      position = [1.0, 0.0]
+      [[shape]]
+      body = "ball"
+      type = "point"
+      [[shape]]
+      name = "ground"
+      type = "half-plane"
+      normal = [1.0, 0.0]
+      [[contact]]
+      name = "ground"
+      between = ["ball", "ground"]
+      collision = [0.0, 200.0, 1e12]
+  )",
+                                                      "ball.toml"));
+  const auto hits = run.events_to(1);
+  ASSERT_GE(hits.size(), 3u);
+  double slower = 1;
+  for (int k = 0; k < 3; ++k) {
+    const double v = -hits[static_cast<std::size_t>(k)].gap_rate_before, e = hits[static_cast<std::size_t>(k)].gap_rate_after / v;
+    EXPECT_NEAR(e, contact::rebound_of({0, 200, 1e12}, v).restitution, 1e-12);
+    EXPECT_LT(e, slower);
+    slower = e;
+  }
+  EXPECT_LT(run.largest("energy_error"), 1e-9);
+}
+
 class BouncingBall : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Integrators, BouncingBall, testing::Values("dop853", "ida"));
 

@@ -25,6 +25,12 @@ Vector least_norm(const Matrix& B, const Vector& b) {
   return decomposition.solve(b);
 }
 
+/// Of this contact at this closing speed.
+Rebound rebound_of(const Touching& touching, double closing_speed) {
+  if (touching.collision.alpha3 == 0) return {touching.restitution, touching.contact_time};
+  return rebound_of(touching.collision, closing_speed);
+}
+
 class Resolution {
  public:
   Resolution(const Matrix& A, const Vector& w, const std::vector<Touching>& touching, int tangents)
@@ -60,26 +66,28 @@ class Resolution {
   /// Every touching contact a spring and damper of its own:  lambda = m (w^2 delta^power + 2 zeta w deltadot), while it is positive.
   FastPhase compliant(double power) {
     const int k = k_;
-    Vector stiffness(k), damping(k), delta = Vector::Zero(k);
+    Vector stiffness(k), damping(k), cubic(k), delta = Vector::Zero(k);
     const Matrix A = A_.topLeftCorner(k, k);
-    double shortest = touching_.front().contact_time;
+    const double speed = std::max(1e-12, -out_.rates.head(k).minCoeff());
+    double shortest = std::numeric_limits<double>::infinity();
     for (int i = 0; i < k; ++i) {
       const Touching& t = touching_[at(i)];
-      const Law law = law_of(std::max(t.restitution, 1e-6), t.contact_time);
+      const Rebound rebound = rebound_of(t, speed);
+      const bool has_own = power == 1 && t.collision.alpha3 != 0;
+      const Law law = has_own ? t.collision : law_of(std::max(rebound.restitution, 1e-6), rebound.time);
       stiffness[i] = law.alpha0 / A(i, i);
       damping[i] = law.alpha1 / A(i, i);
-      shortest = std::min(shortest, t.contact_time);
+      cubic[i] = law.alpha3 / A(i, i);
+      shortest = std::min(shortest, rebound.time);
     }
     // Hertz's spring as stiff as the linear one where the linear one would be deepest
-    const double speed = std::max(1e-12, -out_.rates.head(k).minCoeff());
     if (power != 1) {
       for (int i = 0; i < k; ++i) stiffness[i] /= std::pow(speed * shortest / 4, power - 1);
     }
     const auto forces = [&](const Vector& d, const Vector& w, Vector& lambda) {
       for (int i = 0; i < k; ++i) {
-        const double f = d[i] >= 0 ? stiffness[i] * std::pow(d[i], power) -
-                                         damping[i] * w[i] * (power == 1 ? 1 : std::pow(d[i] / (speed * shortest / 4), power - 1))
-                                   : 0;
+        const double soft = power == 1 ? 1 : std::pow(d[i] / (speed * shortest / 4), power - 1);
+        const double f = d[i] >= 0 ? stiffness[i] * std::pow(d[i], power) + cubic[i] * std::pow(d[i], 3) - damping[i] * w[i] * soft : 0;
         lambda[i] = std::max(f, 0.0);
       }
     };
@@ -154,11 +162,13 @@ class Resolution {
     for (const int i : chosen) {
       if (tangents_ > 0 && touching_[at(i)].friction > 0) tangent[at(i)] = Tangent::sticks;
     }
-    const double e = -out_.rates[n] < touching_[at(n)].rest_speed ? 0 : touching_[at(n)].restitution;
+    const bool rests = -out_.rates[n] < touching_[at(n)].rest_speed;
+    const Rebound rebound = rests ? stop(n) : rebound_of(touching_[at(n)], -out_.rates[n]);
+    const double e = rebound.restitution;
     for (;;) {
       const Vector p = impulse(n, e, chosen, tangent);
       if (!(p[n] > 0) || !((out_.rates + A_ * p)[n] >= -(e * out_.rates[n]) - 1e-9 * std::abs(out_.rates[n]))) {
-        if (chosen.size() == 1) return apply(n, -(1 + e) * out_.rates[n] / A_(n, n) * Vector::Unit(p.size(), n), e);
+        if (chosen.size() == 1) return apply(n, -(1 + e) * out_.rates[n] / A_(n, n) * Vector::Unit(p.size(), n), rebound);
         chosen.resize(1);  // it cannot move while those are held: they take their share afterwards
         continue;
       }
@@ -173,7 +183,7 @@ class Resolution {
         return tangent[at(i)] == Tangent::sticks &&
                p.segment(tangent_of(i), tangents_).norm() > touching_[at(i)].friction * p[i] * (1 + 1e-9);
       });
-      if (slips == chosen.end()) return apply(n, p, e);
+      if (slips == chosen.end()) return apply(n, p, rebound);
       tangent[at(*slips)] = Tangent::slides;
     }
   }
@@ -214,11 +224,13 @@ class Resolution {
     return p;
   }
 
-  void apply(int n, const Vector& impulse, double e) {
+  Rebound stop(int n) const { return {0, touching_[at(n)].contact_time}; }
+
+  void apply(int n, const Vector& impulse, Rebound rebound) {
     const double before = out_.rates[n], work = add_impulse(impulse);
-    time_ += touching_[at(n)].contact_time;
+    time_ += rebound.time;
     out_.events.push_back({n, time_, before, out_.rates[n], impulse[n], work});
-    if (e == 0) {
+    if (rebound.restitution == 0) {
       out_.is_held[at(n)] = 1;
       out_.rates[n] = 0;
     }
@@ -267,7 +279,7 @@ class Resolution {
     Vector impulse = Vector::Zero(A_.rows());
     const Vector s = stopping(still);
     for (std::size_t r = 0; r < still.size(); ++r) impulse[still[r]] = s[static_cast<int>(r)];
-    apply(fastest, impulse, 0);
+    apply(fastest, impulse, stop(fastest));
     std::fill(out_.is_held.begin(), out_.is_held.end(), char{0});
     for (const int i : still) out_.is_held[at(i)] = 1, out_.rates[i] = 0;
   }
@@ -306,24 +318,6 @@ FastPhase resolve(ImpactLaw law, const Matrix& A, const Vector& w, const std::ve
       break;
   }
   return resolution.sequential(false);
-}
-
-std::vector<FastPoint> collision_path(const Law& law, double closing_speed, int points) {
-  // h'' + alpha1 h' + alpha0 h = 0 from h = 0, h' = -v:  two exponentials, complex below zeta = 1  (11)
-  const double w = std::sqrt(law.alpha0), zeta = law.alpha1 / (2 * w), end = contact_time_of(law);
-  std::vector<FastPoint> path;
-  for (int k = 0; k <= points; ++k) {
-    const double t = end * k / points, decay = std::exp(-zeta * w * t), d = std::abs(zeta * zeta - 1);
-    double s = t, c = 1;  // of the critical law
-    if (d > 1e-12) {
-      const double wd = w * std::sqrt(d);
-      s = zeta < 1 ? std::sin(wd * t) / wd : std::sinh(wd * t) / wd;
-      c = zeta < 1 ? std::cos(wd * t) : std::cosh(wd * t);
-    }
-    const double gap = -closing_speed * decay * s, rate = -closing_speed * decay * (c - zeta * w * s);
-    path.push_back({t, gap, rate, -law.alpha1 * rate - law.alpha0 * gap});
-  }
-  return path;
 }
 
 }  // namespace tenon::contact
