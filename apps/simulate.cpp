@@ -17,7 +17,7 @@
 #include "tenon/apps/verb.hpp"
 #include "tenon/core/output_file.hpp"
 #include "tenon/core/trajectory.hpp"
-#include "tenon/problems/contact/fast_phase.hpp"
+#include "tenon/problems/contact/collision.hpp"
 #include "tenon/solvers/make_integrator.hpp"
 
 namespace tenon {

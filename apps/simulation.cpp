@@ -25,7 +25,7 @@ Simulation open_contact(const std::string& name_or_path, const std::vector<std::
   std::visit(
       [&](auto& scene) {
         for (const auto& c : scene.constraints) {
-          if (!c.is_joint() && c.is_two_scale && c.restitution > 0) out.collisions[c.name] = contact::law_of(c.restitution, c.contact_time);
+          if (!c.is_joint() && c.is_two_scale && c.restitution > 0) out.collisions[c.name] = c.collision_law();
         }
         out.dae = make_dae(std::move(scene));
       },

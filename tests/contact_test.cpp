@@ -36,6 +36,65 @@ TEST(Law, FollowsFromRestitutionAndContactTime) {
   }
 }
 
+// beta0 = 0: e depends on zeta_c = beta1 beta3^-1/4 v^-1/2 alone: MODELS.md, section 3.
+TEST(Law, WithACubicSpringSettlesSlowCollisions) {
+  const double expected[][2] = {{0.1, .835445332574}, {1, .181401620746}};
+  for (const auto& [zeta, e] : expected) {
+    for (const double stiffness : {1.0, 1e8}) {
+      const double v = 0.7, beta1 = zeta * std::pow(stiffness, 0.25) * std::sqrt(v);
+      const contact::Law law{0, beta1, stiffness};
+      EXPECT_NEAR(contact::rebound_of(law, v).restitution, e, 1e-10) << zeta;
+      const auto path = contact::collision_path(law, v, 50);
+      EXPECT_NEAR(path.back().rate, e * v, 1e-10) << zeta;
+      EXPECT_NEAR(path.back().acceleration / path[25].acceleration, 0, 1e-9) << zeta;
+      const Eigen::MatrixXd A = Eigen::MatrixXd::Constant(1, 1, 1 / 0.3);
+      const std::vector<contact::Touching> touching{{.collision = law}};
+      for (const ImpactLaw impact : {ImpactLaw::sequential, ImpactLaw::compliant})
+        EXPECT_NEAR(contact::resolve(impact, A, Vector::Constant(1, -v), touching).rates[0], e * v, 1e-7) << zeta;
+    }
+  }
+  // a spring of both terms, without damping, gives back what it was given; with a cubic term of nothing it is the linear one
+  EXPECT_NEAR(contact::rebound_of({1e4, 0, 1e8}, 2).restitution, 1, 1e-10);
+  const contact::Rebound linear = contact::rebound_of({1e4, 20, 0}, 2), nearly = contact::rebound_of({1e4, 20, 1e-12}, 2);
+  EXPECT_NEAR(nearly.restitution, linear.restitution, 1e-9);
+  EXPECT_NEAR(nearly.time, linear.time, 1e-9 * linear.time);
+}
+
+TEST(BouncingBallRestitution, ReboundsByACubicLawTheLessTheSlowerItComes) {
+  const SceneRun run = run_scene(contact::parse_scene(R"(
+      [simulation]
+      gravity = [-9.81, 0.0]
+      duration = 2.0
+      [[body]]
+      name = "ball"
+      kind = "line"
+      mass = 1.0
+      position = [1.0, 0.0]
+      [[shape]]
+      body = "ball"
+      type = "point"
+      [[shape]]
+      name = "ground"
+      type = "half-plane"
+      normal = [1.0, 0.0]
+      [[contact]]
+      name = "ground"
+      between = ["ball", "ground"]
+      collision = [0.0, 200.0, 1e12]
+  )",
+                                                      "ball.toml"));
+  const auto hits = run.events_to(1);
+  ASSERT_GE(hits.size(), 3u);
+  double slower = 1;
+  for (int k = 0; k < 3; ++k) {
+    const double v = -hits[static_cast<std::size_t>(k)].gap_rate_before, e = hits[static_cast<std::size_t>(k)].gap_rate_after / v;
+    EXPECT_NEAR(e, contact::rebound_of({0, 200, 1e12}, v).restitution, 1e-12);
+    EXPECT_LT(e, slower);
+    slower = e;
+  }
+  EXPECT_LT(run.largest("energy_error"), 1e-9);
+}
+
 class BouncingBall : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Integrators, BouncingBall, testing::Values("dop853", "ida"));
 
@@ -161,6 +220,30 @@ TEST(Cradle, EachImpactLawGivesItsOutcome) {
     EXPECT_NEAR(cradle_outcome(ImpactLaw::coupled)[static_cast<std::size_t>(i)], coupled[i], 1e-12);
   }
   EXPECT_NEAR(cradle_outcome(ImpactLaw::hertz)[4], .9887774241, 1e-6);
+}
+
+// A solid disc lands sliding: A_nn = 1/m, A_tt = 1/m + r^2/J = 3/m. The normal impulse is (1 + e) m v; the tangent slides on it or comes to
+// a stop. Where a body turns about the normal's impulse too (A_nt) the work still is what the kinetic energy changes by.
+TEST(Friction, OfACompliantImpactSlidesOrSticks) {
+  const double e = 0.5, v = 2, mass = 0.4, mu = 0.3;
+  const std::vector<contact::Touching> disc{{.restitution = e, .friction = mu}};
+  for (const double coupling : {0.0, 0.8}) {
+    const Eigen::MatrixXd A = (Eigen::MatrixXd(2, 2) << 1, coupling, coupling, 3).finished() / mass;
+    for (const double slip : {0.5, 2.0, 5.0, -5.0}) {
+      const Vector before = (Vector(2) << -v, slip).finished();
+      const auto phase = contact::resolve(ImpactLaw::compliant, A, before, disc, 1);
+      ASSERT_TRUE(phase.failure.empty());
+      const double cone = mu * phase.impulses[0];
+      EXPECT_LE(std::abs(phase.impulses[1]), cone * (1 + 1e-9)) << slip;
+      const double energy = 0.5 * (phase.rates.dot(A.inverse() * phase.rates) - before.dot(A.inverse() * before));
+      EXPECT_NEAR(phase.works.sum(), energy, 1e-12) << slip;
+      EXPECT_NEAR(phase.events.front().work, energy, 1e-12) << slip;
+      if (coupling != 0) continue;
+      EXPECT_NEAR(phase.rates[0], e * v, 1e-6) << slip;
+      EXPECT_NEAR(cone, mu * (1 + e) * mass * v, 1e-6) << slip;
+      EXPECT_NEAR(phase.rates[1], std::abs(slip) <= 3 * cone / mass ? 0 : slip - std::copysign(3 * cone / mass, slip), 1e-6) << slip;
+    }
+  }
 }
 
 TEST(BoxInCorner, RestsOnExactForcesAndItsPeakIsTheLaws) {

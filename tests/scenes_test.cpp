@@ -74,6 +74,25 @@ TEST(Scenes, HappenWithoutPenetrationAndCloseTheirEnergyAudit) {
   }
 }
 
+// Boxes that rebound rock on one another while the lowest rebounds from the floor: many guards fall and rise within one step.
+TEST(BoxStack, ComesToRestFromItsRebounds) {
+  const SceneRun run = run_scene("box-stack", {"restitution=0.3"});
+  EXPECT_GE(run.events_to(contact::kCollision).size(), 100u);
+  EXPECT_LT(run.largest("energy_error"), 1e-9);
+  for (const std::string& column : run.names) {
+    if (column.starts_with("gap_")) {
+      EXPECT_GE(run.smallest(column), -1.1e-9) << column << ": what touches is no deeper than it touches";
+    }
+  }
+  for (int i = 1; i <= 5; ++i) {
+    const std::string box = std::to_string(i);
+    EXPECT_NEAR(run.last("y" + box), 0.2 * (i - 0.5), 1e-8) << "box " << i;
+    EXPECT_NEAR(run.last("vy" + box), 0, 1e-9) << "box " << i;
+    EXPECT_NEAR(run.last("omega" + box), 0, 1e-9) << "box " << i;
+  }
+  EXPECT_NEAR(run.last("lambda_floor_1") + run.last("lambda_floor_2"), 5 * 9.81, 1e-6);
+}
+
 // The wheels stay on the flat road; the body above them heaves on both springs, released at rest from z = heave:
 //     m z'' + 2 d z' + 2 k z = 0,    omega_0^2 = 2k/m = omega^2 + c^2,  c = d/m,    z = heave e^{-ct} (cos omega t + c/omega sin omega t)
 TEST(Car, HeavesAtTheFrequencyOfItsSuspension) {

@@ -234,8 +234,8 @@ Transition ContactDae<D>::collide(DaeState& state, Bodies& bodies, const EventLo
   std::vector<Touching> contacts;
   for (const int i : touching) {
     const Constraint<D>& c = scene_.constraints[static_cast<std::size_t>(i)];
-    contacts.push_back(
-        {c.restitution, c.contact_time, c.rest_speed, c.friction, state.mode.discrete[static_cast<std::size_t>(i)] == kContact});
+    const bool is_held = state.mode.discrete[static_cast<std::size_t>(i)] == kContact;
+    contacts.push_back({c.restitution, c.contact_time, c.rest_speed, c.friction, c.collision, is_held});
   }
   const FastPhase phase = resolve(scene_.impact_law, A, rates, contacts, tangents);
   if (!phase.failure.empty()) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tenon::contact {
 
@@ -22,6 +23,12 @@ Vector least_norm(const Matrix& B, const Vector& b) {
   decomposition.setThreshold(kRank);
   decomposition.compute(B);
   return decomposition.solve(b);
+}
+
+/// Of this contact at this closing speed.
+Rebound rebound_of(const Touching& touching, double closing_speed) {
+  if (touching.collision.alpha3 == 0) return {touching.restitution, touching.contact_time};
+  return rebound_of(touching.collision, closing_speed);
 }
 
 class Resolution {
@@ -59,54 +66,52 @@ class Resolution {
   /// Every touching contact a spring and damper of its own:  lambda = m (w^2 delta^power + 2 zeta w deltadot), while it is positive.
   FastPhase compliant(double power) {
     const int k = k_;
-    Vector stiffness(k), damping(k), delta = Vector::Zero(k), rates = out_.rates.head(k);
+    Vector stiffness(k), damping(k), cubic(k), delta = Vector::Zero(k);
     const Matrix A = A_.topLeftCorner(k, k);
-    double shortest = touching_.front().contact_time;
+    const double speed = std::max(1e-12, -out_.rates.head(k).minCoeff());
+    double shortest = std::numeric_limits<double>::infinity();
     for (int i = 0; i < k; ++i) {
       const Touching& t = touching_[at(i)];
-      const Law law = law_of(std::max(t.restitution, 1e-6), t.contact_time);
+      const Rebound rebound = rebound_of(t, speed);
+      const bool has_own = power == 1 && t.collision.alpha3 != 0;
+      const Law law = has_own ? t.collision : law_of(std::max(rebound.restitution, 1e-6), rebound.time);
       stiffness[i] = law.alpha0 / A(i, i);
       damping[i] = law.alpha1 / A(i, i);
-      shortest = std::min(shortest, t.contact_time);
+      cubic[i] = law.alpha3 / A(i, i);
+      shortest = std::min(shortest, rebound.time);
     }
     // Hertz's spring as stiff as the linear one where the linear one would be deepest
-    const double speed = std::max(1e-12, -rates.minCoeff());
     if (power != 1) {
       for (int i = 0; i < k; ++i) stiffness[i] /= std::pow(speed * shortest / 4, power - 1);
     }
     const auto forces = [&](const Vector& d, const Vector& w, Vector& lambda) {
       for (int i = 0; i < k; ++i) {
-        const double f = d[i] > 0 ? stiffness[i] * std::pow(d[i], power) -
-                                        damping[i] * w[i] * (power == 1 ? 1 : std::pow(d[i] / (speed * shortest / 4), power - 1))
-                                  : 0;
+        const double soft = power == 1 ? 1 : std::pow(d[i] / (speed * shortest / 4), power - 1);
+        const double f = d[i] >= 0 ? stiffness[i] * std::pow(d[i], power) + cubic[i] * std::pow(d[i], 3) - damping[i] * w[i] * soft : 0;
         lambda[i] = std::max(f, 0.0);
       }
     };
     const double h = shortest / kStepsOfAContact;
-    Vector l1(k), l2(k), l3(k), l4(k), d(k), w(k);
-    const Vector before = rates, start = out_.rates;
+    Vector l1(k), l2(k), l3(k), l4(k), d(k), w(k), w1(k), w2(k), w3(k), p = Vector::Zero(out_.rates.size());
+    const Vector before = out_.rates;
     for (long step = 0; step < static_cast<long>(kMostContactTimes * kStepsOfAContact); ++step) {
-      forces(delta, rates, l1);
-      if (step > 0 && l1.maxCoeff() <= 0 && rates.minCoeff() >= -kStandsStill) {
+      w1 = out_.rates.head(k);
+      forces(delta, w1, l1);
+      if (step > 0 && l1.maxCoeff() <= 0 && w1.minCoeff() >= -kStandsStill) {
         finish_compliant(before, static_cast<double>(step) * h);
         return std::move(out_);
       }
       // classical Runge-Kutta on deltadot = -w, wdot = A lambda
-      const Vector w1 = rates;
-      d = delta - 0.5 * h * w1, w = rates + 0.5 * h * (A * l1);
-      forces(d, w, l2);
-      const Vector w2 = w;
-      d = delta - 0.5 * h * w2, w = rates + 0.5 * h * (A * l2);
-      forces(d, w, l3);
-      const Vector w3 = w;
-      d = delta - h * w3, w = rates + h * (A * l3);
+      d = delta - 0.5 * h * w1, w2 = w1 + 0.5 * h * (A * l1);
+      forces(d, w2, l2);
+      d = delta - 0.5 * h * w2, w3 = w1 + 0.5 * h * (A * l2);
+      forces(d, w3, l3);
+      d = delta - h * w3, w = w1 + h * (A * l3);
       forces(d, w, l4);
-      const Vector lambda = (l1 + 2 * l2 + 2 * l3 + l4) / 6;
       delta -= h / 6 * (w1 + 2 * w2 + 2 * w3 + w);
-      rates += h * (A * lambda);
-      out_.impulses.head(k) += h * lambda;
-      out_.works.head(k) += h * lambda.cwiseProduct(rates - 0.5 * h * (A * lambda));
-      out_.rates = start + A_.leftCols(k) * out_.impulses.head(k);
+      p.head(k) = h / 6 * (l1 + 2 * l2 + 2 * l3 + l4);
+      add_impulse(p);
+      for (int i = 0; i < k && tangents_ > 0; ++i) rub(i, p[i]);
     }
     out_.failure = "the compliant fast phase does not end within " + std::to_string(static_cast<int>(kMostContactTimes)) + " contact times";
     return std::move(out_);
@@ -115,10 +120,33 @@ class Resolution {
  private:
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+  int tangent_of(int i) const { return k_ + i * tangents_; }  // its first row
+
+  /// The work of an impulse over a velocity that changes linearly with it; returns that of all rows.
+  double add_impulse(const Vector& p) {
+    const Vector after = out_.rates + A_ * p, works = 0.5 * p.cwiseProduct(out_.rates + after);
+    out_.rates = after;
+    out_.impulses += p;
+    out_.works += works;
+    return works.sum();
+  }
+
+  /// The tangential impulse that stops contact i, as far as Coulomb's cone over this normal impulse reaches.
+  void rub(int i, double normal) {
+    const double most = touching_[at(i)].friction * normal;
+    if (!(most > 0)) return;
+    const int t = tangent_of(i);
+    const Vector stop = least_norm(A_.block(t, t, tangents_, tangents_), -out_.rates.segment(t, tangents_));
+    Vector p = Vector::Zero(out_.rates.size());
+    p.segment(t, tangents_) = stop * std::min(1.0, most / std::max(stop.norm(), std::numeric_limits<double>::min()));
+    add_impulse(p);
+  }
+
   void finish_compliant(const Vector& before, double time) {
-    for (int i = 0; i < before.size(); ++i) {
+    for (int i = 0; i < k_; ++i) {
       out_.is_held[at(i)] = 0;
-      if (out_.impulses[i] > 0) out_.events.push_back({i, time, before[i], out_.rates[i], out_.impulses[i], out_.works[i]});
+      const double work = out_.works[i] + out_.works.segment(tangent_of(i), tangents_).sum();
+      if (out_.impulses[i] > 0) out_.events.push_back({i, time, before[i], out_.rates[i], out_.impulses[i], work});
     }
   }
 
@@ -134,11 +162,13 @@ class Resolution {
     for (const int i : chosen) {
       if (tangents_ > 0 && touching_[at(i)].friction > 0) tangent[at(i)] = Tangent::sticks;
     }
-    const double e = -out_.rates[n] < touching_[at(n)].rest_speed ? 0 : touching_[at(n)].restitution;
+    const bool rests = -out_.rates[n] < touching_[at(n)].rest_speed;
+    const Rebound rebound = rests ? stop(n) : rebound_of(touching_[at(n)], -out_.rates[n]);
+    const double e = rebound.restitution;
     for (;;) {
       const Vector p = impulse(n, e, chosen, tangent);
       if (!(p[n] > 0) || !((out_.rates + A_ * p)[n] >= -(e * out_.rates[n]) - 1e-9 * std::abs(out_.rates[n]))) {
-        if (chosen.size() == 1) return apply(n, -(1 + e) * out_.rates[n] / A_(n, n) * Vector::Unit(p.size(), n), e);
+        if (chosen.size() == 1) return apply(n, -(1 + e) * out_.rates[n] / A_(n, n) * Vector::Unit(p.size(), n), rebound);
         chosen.resize(1);  // it cannot move while those are held: they take their share afterwards
         continue;
       }
@@ -151,9 +181,9 @@ class Resolution {
       }
       const auto slips = std::find_if(chosen.begin(), chosen.end(), [&](int i) {
         return tangent[at(i)] == Tangent::sticks &&
-               p.segment(k_ + i * tangents_, tangents_).norm() > touching_[at(i)].friction * p[i] * (1 + 1e-9);
+               p.segment(tangent_of(i), tangents_).norm() > touching_[at(i)].friction * p[i] * (1 + 1e-9);
       });
-      if (slips == chosen.end()) return apply(n, p, e);
+      if (slips == chosen.end()) return apply(n, p, rebound);
       tangent[at(*slips)] = Tangent::slides;
     }
   }
@@ -167,8 +197,8 @@ class Resolution {
     for (const int i : chosen) {
       Vector unit = Vector::Unit(size, i);
       if (tangent[at(i)] == Tangent::slides) {
-        const auto slip = out_.rates.segment(k_ + i * tangents_, tangents_);
-        if (slip.norm() > 0) unit.segment(k_ + i * tangents_, tangents_) = -touching_[at(i)].friction * slip.normalized();
+        const auto slip = out_.rates.segment(tangent_of(i), tangents_);
+        if (slip.norm() > 0) unit.segment(tangent_of(i), tangents_) = -touching_[at(i)].friction * slip.normalized();
       }
       target[static_cast<int>(rows.size())] = i == n ? -(1 + e) * out_.rates[n] : -out_.rates[i];
       rows.push_back(i);
@@ -176,7 +206,7 @@ class Resolution {
     }
     for (const int i : chosen) {
       if (tangent[at(i)] != Tangent::sticks) continue;
-      for (int t = k_ + i * tangents_; t < k_ + (i + 1) * tangents_; ++t) {
+      for (int t = tangent_of(i); t < tangent_of(i + 1); ++t) {
         target[static_cast<int>(rows.size())] = -out_.rates[t];
         rows.push_back(t);
         along.push_back(Vector::Unit(size, t));
@@ -194,16 +224,13 @@ class Resolution {
     return p;
   }
 
-  void apply(int n, const Vector& impulse, double e) {
-    const Vector after = out_.rates + A_ * impulse;
-    // the work of an impulse over a velocity that changes linearly with it
-    const Vector works = 0.5 * impulse.cwiseProduct(out_.rates + after);
-    time_ += touching_[at(n)].contact_time;
-    out_.events.push_back({n, time_, out_.rates[n], after[n], impulse[n], works.sum()});
-    out_.rates = after;
-    out_.impulses += impulse;
-    out_.works += works;
-    if (e == 0) {
+  Rebound stop(int n) const { return {0, touching_[at(n)].contact_time}; }
+
+  void apply(int n, const Vector& impulse, Rebound rebound) {
+    const double before = out_.rates[n], work = add_impulse(impulse);
+    time_ += rebound.time;
+    out_.events.push_back({n, time_, before, out_.rates[n], impulse[n], work});
+    if (rebound.restitution == 0) {
       out_.is_held[at(n)] = 1;
       out_.rates[n] = 0;
     }
@@ -252,7 +279,7 @@ class Resolution {
     Vector impulse = Vector::Zero(A_.rows());
     const Vector s = stopping(still);
     for (std::size_t r = 0; r < still.size(); ++r) impulse[still[r]] = s[static_cast<int>(r)];
-    apply(fastest, impulse, 0);
+    apply(fastest, impulse, stop(fastest));
     std::fill(out_.is_held.begin(), out_.is_held.end(), char{0});
     for (const int i : still) out_.is_held[at(i)] = 1, out_.rates[i] = 0;
   }
@@ -291,24 +318,6 @@ FastPhase resolve(ImpactLaw law, const Matrix& A, const Vector& w, const std::ve
       break;
   }
   return resolution.sequential(false);
-}
-
-std::vector<FastPoint> collision_path(const Law& law, double closing_speed, int points) {
-  // h'' + alpha1 h' + alpha0 h = 0 from h = 0, h' = -v:  two exponentials, complex below zeta = 1  (11)
-  const double w = std::sqrt(law.alpha0), zeta = law.alpha1 / (2 * w), end = contact_time_of(law);
-  std::vector<FastPoint> path;
-  for (int k = 0; k <= points; ++k) {
-    const double t = end * k / points, decay = std::exp(-zeta * w * t), d = std::abs(zeta * zeta - 1);
-    double s = t, c = 1;  // of the critical law
-    if (d > 1e-12) {
-      const double wd = w * std::sqrt(d);
-      s = zeta < 1 ? std::sin(wd * t) / wd : std::sinh(wd * t) / wd;
-      c = zeta < 1 ? std::cos(wd * t) : std::cosh(wd * t);
-    }
-    const double gap = -closing_speed * decay * s, rate = -closing_speed * decay * (c - zeta * w * s);
-    path.push_back({t, gap, rate, -law.alpha1 * rate - law.alpha0 * gap});
-  }
-  return path;
 }
 
 }  // namespace tenon::contact

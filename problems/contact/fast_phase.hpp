@@ -7,7 +7,7 @@
 // p_n.   (16) A held contact that would have to pull lets go, and the collision is taken again without it. Where all that still closes is
 // slower than its rest_speed, the rest of the phase is one blow without rebound:  p >= 0, w + A p >= 0, p'(w + A p) = 0.   (17) With
 // friction the rows of the normals are followed by those of the tangents, `tangents` for each contact: they stick where |p_t| <= mu p_n
-// allows, else p_t = mu p_n against the sliding. Laws: see ImpactLaw in scene.hpp.
+// allows, else p_t = mu p_n against the sliding; `compliant` asks so at each of its steps. Laws: see ImpactLaw in scene.hpp.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "tenon/core/eigen.hpp"
-#include "tenon/problems/contact/law.hpp"
+#include "tenon/problems/contact/collision.hpp"
 #include "tenon/problems/contact/scene.hpp"
 
 namespace tenon::contact {
@@ -25,6 +25,7 @@ inline constexpr int kMostMicroEvents = 1000;
 /// One touching contact, as the fast phase sees it.
 struct Touching {
   double restitution = 1, contact_time = 1e-3, rest_speed = 1e-3, friction = 0;
+  Law collision = {};    // with a cubic term: in place of restitution and contact_time
   bool is_held = false;  // carries a force: it must not open nor close, unless it would have to pull
 };
 
@@ -48,12 +49,5 @@ struct FastPhase {
 
 /// Resolves all closing contacts. A is symmetric positive semi-definite; it and w have k (1 + tangents) rows for k touching contacts.
 FastPhase resolve(ImpactLaw law, const Eigen::MatrixXd& A, const Vector& w, const std::vector<Touching>& touching, int tangents = 0);
-
-/// The same collision of one contact in its own time scale, for a picture of it: gap, rate and force per effective mass at time tau since
-/// the touch.
-struct FastPoint {
-  double tau, gap, rate, acceleration;
-};
-std::vector<FastPoint> collision_path(const Law& law, double closing_speed, int points);
 
 }  // namespace tenon::contact

@@ -63,6 +63,7 @@ struct Constraint {
   bool is_two_scale = true;         // collisions in a fast phase of their own
   double restitution = 1;           // of a collision, in [0, 1]
   double contact_time = 1e-3;       // s, of a collision: how long its fast phase lasts
+  Law collision;                    // with a cubic term: in place of restitution and contact_time
   double rest_speed = 1e-3;         // m/s: slower rebounds stay in contact
   double rest_acceleration = 1e-2;  // m/s^2: of a one-law contact, with rest_speed
   double friction = 0;              // Coulomb's mu
@@ -70,6 +71,8 @@ struct Constraint {
   Stabilisation stabilisation = Stabilisation::baumgarte;
 
   bool is_joint() const { return kind == ConstraintKind::joint; }
+  /// Of its fast phase; restitution 0 has none.
+  Law collision_law() const { return collision.alpha3 != 0 ? collision : law_of(restitution, contact_time); }
   bool is_index_2() const { return stabilisation == Stabilisation::gear_gupta_leimkuhler; }
 };
 

@@ -11,9 +11,8 @@
 //     [[joint]]     name, type = "revolute" | "distance" | "rope" | "slide" | "angle" | "weld" | "guide", between, at, from, to, length,
 //     axis, lock, pole or stabilisation,
 //                   amplitude, frequency, phase, and a rope's contact keys                places in world axes, at the start
-//     [[contact]]   name, between = [shape or body, shape or body], restitution and contact_time or collision = [beta0, beta1], alpha =
-//     [a0, a1, a3],
-//                   one_law, friction, friction_speed, rest_speed, rest_acceleration
+//     [[contact]]   name, between = [shape or body, shape or body], restitution and contact_time or collision = [beta0, beta1] or
+//                   [beta0, beta1, beta3], alpha = [a0, a1, a3], one_law, friction, friction_speed, rest_speed, rest_acceleration
 //     [[force]]     name, type = "spring" | "torsion" | "constant" | "sinusoid" | "expression" | "drag", between or on, from, to,
 //     stiffness, damping, rest,
 //                   force, torque, frequency, phase, expression

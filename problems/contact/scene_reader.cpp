@@ -214,12 +214,18 @@ void SceneReader<D>::read_law(const Table& table, Constraint<D>& c) const {
   c.contact_time = table.has("contact_time") ? positive(table, "contact_time") : 1e-3;
   if (table.has("collision")) {
     if (table.has("restitution")) throw InputError(table.position("collision"), "both 'collision' and 'restitution'", "one of them");
-    const std::vector<double> beta = values_.numbers(table, "collision", 2);
-    if (!(beta[0] > 0 && beta[1] >= 0))
-      throw InputError(table.position("collision"), "a collision law without stiffness", "[beta0 > 0, beta1 >= 0]");
-    const Law collision{beta[0], beta[1], 0};
-    c.restitution = restitution_of(beta[1] / (2 * std::sqrt(beta[0])));
-    c.contact_time = contact_time_of(collision);
+    std::vector<double> beta = values_.numbers(table, "collision");
+    const std::size_t size = beta.size();
+    beta.resize(3);
+    const bool pushes = beta[1] >= 0 && (beta[2] == 0 ? beta[0] > 0 : beta[0] >= 0 && beta[2] > 0);
+    if (size < 2 || size > 3 || !pushes)
+      throw InputError(table.position("collision"), "a collision law without stiffness",
+                       "[beta0 > 0, beta1 >= 0] or [beta0, beta1, beta3 > 0]");
+    const Law collision{beta[0], beta[1], beta[2]};
+    if (beta[2] != 0)
+      c.collision = collision;
+    else
+      c.restitution = restitution_of(beta[1] / (2 * std::sqrt(beta[0]))), c.contact_time = contact_time_of(collision);
   }
   c.friction = in_interval(table, "friction", 0, unlimited, 0);
   if (table.has("friction_speed")) c.friction_speed = positive(table, "friction_speed");

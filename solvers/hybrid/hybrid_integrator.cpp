@@ -166,17 +166,25 @@ bool HybridIntegrator::find_crossing(Crossing& crossing) {
     if (!look(right)) return false;
     evaluate_guards(sample_, after_);
     int first = -1;
-    for (int i = 0; i < after_.size(); ++i) {
-      if (!is_armed_[static_cast<std::size_t>(i)] || after_[i] > 0) continue;
-      if (first >= 0 && guard_at(crossing.t, i) > 0) continue;  // falls later
-      const double t = locate(i, left, right);
-      if (first < 0 || t < crossing.t) first = i, crossing.t = t;
+    const auto find_earlier = [&](double t_fallen) {
+      const double before = first < 0 ? std::numeric_limits<double>::infinity() : crossing.t;
+      for (int i = 0; i < after_.size(); ++i) {
+        if (i == first || !is_armed_[static_cast<std::size_t>(i)] || after_[i] > 0) continue;
+        if (first >= 0 && guard_at(crossing.t, i) > 0) continue;  // falls later
+        const double t = locate(i, left, t_fallen);
+        if (first < 0 || t < crossing.t) first = i, crossing.t = t;
+      }
+      return first >= 0 && crossing.t < before - options_.event_tolerance;
+    };
+    // what is up again at the sample may have fallen before the others: looked at where the first of them fell
+    for (double t = right; find_earlier(t); t = crossing.t) {
+      look(crossing.t);
+      evaluate_guards(sample_, after_);
     }
     if (first >= 0) {
       crossing.fired.push_back(first);
       for (int i = 0; i < after_.size(); ++i) {
-        const bool fell = i != first && is_armed_[static_cast<std::size_t>(i)] && after_[i] <= 0;
-        if (fell && guard_at(crossing.t, i) <= 0) crossing.fired.push_back(i);
+        if (i != first && is_armed_[static_cast<std::size_t>(i)] && after_[i] <= 0) crossing.fired.push_back(i);
       }
       return true;
     }
