@@ -160,6 +160,53 @@ TEST(Explanation, AValueThatIsNotFiniteIsNamedWithItsPoint) {
   EXPECT_THAT(row.explanation.text(), HasSubstr("x[3] = "));
 }
 
+/// hs043, whose derivatives are finite at the start (0, 0, 0, 0) but not where x[1] > edge; its solution is (0, 1, 2, -1).
+class SpoiltBeyond final : public NlpDecorator {
+ public:
+  enum What { gradient_by_x2, row_1_by_x0 };
+  SpoiltBeyond(const Nlp& problem, What what, double edge) : NlpDecorator(problem), what_(what), edge_(edge) {}
+
+  void gradient(ConstVectorRef x, Workspace& w, VectorRef gradient) const override {
+    problem_.gradient(x, w, gradient);
+    if (what_ == gradient_by_x2 && x[1] > edge_) gradient[2] = std::nan("");
+  }
+  void jacobian(ConstVectorRef x, Workspace& w, std::span<double> values) const override {
+    problem_.jacobian(x, w, values);
+    if (what_ == row_1_by_x0 && x[1] > edge_) values[1] = std::nan("");
+  }
+
+ private:
+  What what_;
+  double edge_;
+};
+
+TEST(Explanation, ADerivativeThatIsNotFiniteAtTheStartIsNamedScaledOrNot) {
+  const auto hs043 = find_problem("hs043").make();
+  for (const bool scaling : {true, false}) {
+    for (const auto& [what, name] : {std::pair{SpoiltBeyond::gradient_by_x2, "the objective's derivative by x[2] is nan"},
+                                     std::pair{SpoiltBeyond::row_1_by_x0, "the derivative of row c[1] by x[0] is nan"}}) {
+      const Ended ended = solve(SpoiltBeyond(*hs043, what, -1), {.scaling = scaling});
+      EXPECT_EQ(ended.result.status, Status::invalid_start);
+      EXPECT_THAT(ended.explanation.text(), HasSubstr(name));
+    }
+  }
+}
+
+TEST(Explanation, DerivativesThatAreNotFiniteLaterOnAreNoConflictOfRows) {
+  const auto hs043 = find_problem("hs043").make();
+  for (const bool scaling : {true, false}) {
+    for (const auto what : {SpoiltBeyond::gradient_by_x2, SpoiltBeyond::row_1_by_x0}) {
+      for (int step = 1; step < 20; ++step) {
+        const SpoiltBeyond problem(*hs043, what, 0.05 * step);
+        const Ended ended = solve(problem, {.scaling = scaling});
+        EXPECT_EQ(ended.result.status, Status::numerical_failure) << scaling << what << " " << step;
+        EXPECT_THAT(ended.names(), IsEmpty());
+        EXPECT_FALSE(ended.explanation.sentences.empty());
+      }
+    }
+  }
+}
+
 TEST(Explanation, AWrongDerivativeIsNamed) {
   class WrongJacobian final : public NlpDecorator {
    public:

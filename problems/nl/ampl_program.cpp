@@ -191,6 +191,7 @@ class AmplProgram final : public Nlp {
     find_jacobian();
     find_hessian();
     find_bounds();
+    evaluate_once();
   }
 
   bool maximises() const { return sign_ < 0; }
@@ -279,6 +280,13 @@ class AmplProgram final : public Nlp {
       bounds_.c_lower[j] = bound_of(LUrhs[2 * j]);
       bounds_.c_upper[j] = bound_of(LUrhs[2 * j + 1]);
     }
+  }
+
+  /// The library takes its last memory at the first Hessian: here, at the start, rather than in a solve. (Where the start has no Hessian,
+  /// the first x that has one pays for it.)
+  void evaluate_once() {
+    std::vector<double> values(hessian_.inner.size());
+    if (at_->move_to(start().x)) at_->hessian(objective_, 0, Vector::Zero(m_), values);
   }
 
   std::unique_ptr<AslAtX> at_;

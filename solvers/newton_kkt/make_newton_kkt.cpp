@@ -1,6 +1,7 @@
 #include "tenon/solvers/newton_kkt/make_newton_kkt.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "tenon/core/quasi_newton_nlp.hpp"
@@ -52,6 +53,7 @@ class NlpNewtonKkt final : public Solver {
     Result result = solver_.solve(point);
     scaled_.unscale(point);
     if (!scaled_.is_identity()) judge(point, result);
+    if (!bears_out(result)) result.status = Status::numerical_failure;
     return result;
   }
 
@@ -98,6 +100,14 @@ class NlpNewtonKkt final : public Solver {
     gradient_.noalias() += jacobian_.transpose() * point.lambda;
     rows_ -= bounds_.compliance.cwiseProduct(point.lambda - bounds_.preload);
     result.residual = kkt_residual(point, bounds_, gradient_, rows_);
+  }
+
+  /// Whether the residual is that of an answer: where a derivative is not finite nothing is known, and rows that are met are no conflict.
+  bool bears_out(const Result& result) const {
+    const bool infeasible = result.status == Status::infeasible;
+    if (!infeasible && !succeeded(result.status)) return true;
+    if (!std::isfinite(result.residual.stationarity)) return false;
+    return !infeasible || result.scaled_residual.value_or(result.residual).primal > options_.tolerance;
   }
 
   static constexpr double kMostTightened = 1e-4, kFinest = 1e-13;
