@@ -13,6 +13,7 @@ constexpr int kSamples = 3;  // a step's end, and two points inside it
 constexpr int kMaxBisections = 200;
 constexpr int kFewSecants = 8;
 constexpr int kMaxLandings = 4;
+constexpr std::size_t kMostSuspects = 4;
 constexpr double kSameTime = 4e-16;  // relative: two instants nobody can tell apart
 
 bool is_same_time(double a, double b) {
@@ -69,7 +70,7 @@ IntegrationResult HybridIntegrator::advance(DaeState& state, double t_end) {
         case Flow::Step::taken:
           break;
         case Flow::Step::collapsed:
-          fail(IntegrationStatus::step_collapse, state, "the step collapses");
+          fail(IntegrationStatus::step_collapse, state, "the step collapses" + suspects(state));
           return finish();
         case Flow::Step::failed:
           fail(IntegrationStatus::no_consistent_state, state, why_inconsistent(state));
@@ -82,7 +83,7 @@ IntegrationResult HybridIntegrator::advance(DaeState& state, double t_end) {
       }
       const bool is_struck = t_clock <= t_end && is_same_time(current_->end(), t_clock);
       if (!(is_struck ? current_->land(current_->end(), state) : current_->interpolate(current_->end(), state))) {
-        fail(IntegrationStatus::no_consistent_state, state, "no consistent multipliers");
+        fail(IntegrationStatus::no_consistent_state, state, why_inconsistent(state));
         return finish();
       }
       if (!is_struck && !write_outputs(state.t)) return finish();
@@ -104,7 +105,7 @@ bool HybridIntegrator::is_where_we_left(const DaeState& state) const {
 bool HybridIntegrator::settle(DaeState& state, std::span<const int> fired, bool is_consistent) {
   for (int k = 0; k < options_.max_events_at_once; ++k, is_consistent = false) {
     if (dae_.has_manifold(state.mode) && !dae_.project(state.mode, state.t, state.x, workspace_))
-      return fail(IntegrationStatus::no_consistent_state, state, "the position constraints cannot be closed");
+      return fail(IntegrationStatus::no_consistent_state, state, "the position constraints cannot be closed" + suspects(state));
     if ((!is_consistent || dae_.has_manifold(state.mode)) && !make_consistent(dae_, newton_, state, workspace_))
       return fail(IntegrationStatus::no_consistent_state, state, why_inconsistent(state));
     const Transition transition = dae_.transition(state, fired, workspace_, options_.on_event);
@@ -113,7 +114,8 @@ bool HybridIntegrator::settle(DaeState& state, std::span<const int> fired, bool 
     fired = {};
     ++result_.events;
   }
-  return fail(IntegrationStatus::too_many_events, state, std::to_string(options_.max_events_at_once) + " events at one instant");
+  return fail(IntegrationStatus::too_many_events, state,
+              std::to_string(options_.max_events_at_once) + " events at one instant" + suspects(state));
 }
 
 bool HybridIntegrator::restart(DaeState& state, std::span<const int> fired, bool is_consistent) {
@@ -229,7 +231,7 @@ bool HybridIntegrator::land(Crossing& crossing, DaeState& state) {
   const double t0 = std::max(current_->begin(), crossing.t - delta), t1 = std::min(current_->end(), t0 + 2 * delta);
   const double slope = (guard_at(t1, guard) - guard_at(t0, guard)) / (t1 - t0);
   for (int k = 0; k < kMaxLandings; ++k) {
-    if (!current_->land(crossing.t, state)) return fail(IntegrationStatus::no_consistent_state, state, "no consistent multipliers");
+    if (!current_->land(crossing.t, state)) return fail(IntegrationStatus::no_consistent_state, state, why_inconsistent(state));
     evaluate_guards(state, values_);
     const double correction = -values_[guard] / slope;
     if (!(std::abs(correction) > options_.event_tolerance) || !(std::abs(correction) < delta)) break;
@@ -238,7 +240,7 @@ bool HybridIntegrator::land(Crossing& crossing, DaeState& state) {
   // a guard that jumps has no zero to land on: the next mode starts where it has fallen, or this event would come back for ever
   for (double ahead = options_.event_tolerance; values_[guard] > 0 && crossing.t < current_->end(); ahead *= 2) {
     crossing.t = std::min(crossing.t + ahead, current_->end());
-    if (!current_->land(crossing.t, state)) return fail(IntegrationStatus::no_consistent_state, state, "no consistent multipliers");
+    if (!current_->land(crossing.t, state)) return fail(IntegrationStatus::no_consistent_state, state, why_inconsistent(state));
     evaluate_guards(state, values_);
   }
   return true;
@@ -268,7 +270,28 @@ bool HybridIntegrator::emit(const DaeState& state) {
 
 std::string HybridIntegrator::why_inconsistent(const DaeState& state) {
   const std::string what = "no consistent multipliers";
-  return dae_.has_manifold(state.mode) ? what : what + "; the system is " + newton_.diagnose(state, workspace_).text();
+  return dae_.has_manifold(state.mode) ? what + suspects(state) : what + "; the system is " + newton_.diagnose(state, workspace_).text();
+}
+
+/// What is not finite; else what changes fastest, and what acts.
+std::string HybridIntegrator::suspects(const DaeState& state) const {
+  const auto listed = [](const std::string& what, const std::vector<std::string>& names) {
+    std::string text = names.empty() ? "" : "; " + what + ":";
+    for (std::size_t k = 0; k < std::min(names.size(), kMostSuspects); ++k) text += (k == 0 ? " " : ", ") + names[k];
+    return names.size() > kMostSuspects ? text + " and " + std::to_string(names.size() - kMostSuspects) + " more" : text;
+  };
+  std::vector<std::string> wrong, acting;
+  int fastest = -1;
+  for (int i = 0; i < dae_.num_states(); ++i) {
+    if (!std::isfinite(state.x[i]) || !std::isfinite(state.xdot[i])) wrong.push_back(dae_.state_name(i));
+    if (fastest < 0 || std::abs(state.xdot[i]) > std::abs(state.xdot[fastest])) fastest = i;
+  }
+  for (int i = 0; i < dae_.num_algebraics(); ++i) {
+    if (!std::isfinite(state.y[i])) wrong.push_back(dae_.algebraic_name(i));
+    if (state.y[i] != 0) acting.push_back(dae_.algebraic_name(i));
+  }
+  if (!wrong.empty()) return listed("not finite", wrong);
+  return listed("fastest", fastest < 0 ? acting : std::vector{dae_.state_name(fastest)}) + listed("acting", acting);
 }
 
 bool HybridIntegrator::fail(IntegrationStatus status, const DaeState& state, const std::string& why) {

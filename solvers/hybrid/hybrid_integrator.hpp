@@ -41,6 +41,7 @@ class HybridIntegrator final : public Integrator {
   double guard_at(double t, int guard);
   void evaluate_guards(const DaeState& state, Vector& values);
   std::string why_inconsistent(const DaeState& state);
+  std::string suspects(const DaeState& state) const;
   bool fail(IntegrationStatus status, const DaeState& state, const std::string& why);
 
   const Dae& dae_;

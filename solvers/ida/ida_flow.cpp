@@ -125,6 +125,7 @@ class IdaFlow final : public Flow {
       end_ = begin_;
       return flag == IDA_LSETUP_FAIL || flag == IDA_LSOLVE_FAIL || flag == IDA_RES_FAIL ? Step::failed : Step::collapsed;
     }
+    if (!(end_ > begin_)) return Step::collapsed;  // IDA itself goes on with steps that no longer change t
     ++steps_;
     longest_ = begin_ == at_.t ? end_ - begin_ : std::max(longest_, end_ - begin_);
     return Step::taken;
