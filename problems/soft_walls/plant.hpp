@@ -24,7 +24,6 @@ class WallsPlant final : public Plant {
   void outputs(VectorRef values) const override;
   int num_verdicts() const override { return 8; }
   std::string verdict_name(int i) const override;
-  std::string severity() const override { return "end"; }
   void verdicts(VectorRef values) const override;
   std::string severity() const override { return "end"; }
   std::string measurement_name(int i) const override;

@@ -34,7 +34,6 @@ class PlanePlant final : public Plant {
   /// Touch, peak, rebound, held force and the time from which it was held.
   int num_verdicts() const override { return 8; }
   std::string verdict_name(int i) const override;
-  std::string severity() const override { return "peak_force"; }
   void verdicts(VectorRef values) const override;
   std::string severity() const override { return "peak_force"; }
   std::string measurement_name(int i) const override;
