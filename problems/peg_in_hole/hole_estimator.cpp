@@ -12,13 +12,14 @@ namespace tenon::peg {
 namespace {
 
 constexpr double kInterval = 0.02;   // s: what sigma and the forgetting speak of
-constexpr double kForgetting = 0.995;
+constexpr double kForgetting = 0.985;
 constexpr double kMargin = 1.2;      // of the grid beyond the prior's half width
 constexpr double kNear = 2;          // mm above the highest mouth there may be: the estimate begins
 constexpr double kTouch = 0.7, kSideways = 0.4, kTurning = 0.3;  // N: a touch; which side it is on, by force, by moment / lever
 constexpr double kPushWeight = 0.3, kFar = 0.5;                  // mm
-constexpr double kLargestFriction = 0.5;                         // beyond it a force is not of that face
-constexpr double kForceDeviation = 0.5, kLargestResidual = 1;    // N
+constexpr double kLargestFriction = 0.5, kLargestResidual = 1;   // beyond it a force is not of that face; N
+constexpr double kJammedFriction = 1, kJammedResidual = 0.3;     // the same on a wall, where the one opposite may add its own; N
+constexpr double kForceDeviation = 0.5;                          // N
 
 Eigen::ArrayXf axis(double middle, double half, int cells) {
   if (cells == 1) return Eigen::ArrayXf::Constant(1, static_cast<float>(middle));
@@ -34,9 +35,9 @@ int pushing_side(const Vector3d& force) {
 }
 
 /// N: what of a push along a face its friction cannot account for, given the push at right angles to it.
-float beyond_friction(float normal, float tangential) {
-  const float residual = std::abs(tangential) - static_cast<float>(kLargestFriction) * std::max(normal, 0.0F);
-  return std::clamp(residual, 0.0F, static_cast<float>(kLargestResidual));
+float beyond_friction(float normal, float tangential, double friction = kLargestFriction, double largest = kLargestResidual) {
+  const float residual = std::abs(tangential) - static_cast<float>(friction) * std::max(normal, 0.0F);
+  return std::clamp(residual, 0.0F, static_cast<float>(largest));
 }
 
 }  // namespace
@@ -107,6 +108,7 @@ void HoleEstimator::weigh(const Vector3d& pose, const Vector3d& force, double ga
     const float against_flat = beyond_friction(fz, fx);
     const float against_chamfer =
         beyond_friction((fz - static_cast<float>(side) * fx) * kDiagonal, (fx + static_cast<float>(side) * fz) * kDiagonal);
+    const float against_wall = beyond_friction(-static_cast<float>(side) * fx, fz, kJammedFriction, kJammedResidual);
     for (Eigen::Index h = 0; h < z_.size(); ++h) {
       for (const float r : {-1.0F, 1.0F}) {
         const float corner_x = px + r * c * width / 2, corner_z = pz + r * s * width / 2 - z_[h];
@@ -122,7 +124,7 @@ void HoleEstimator::weigh(const Vector3d& pose, const Vector3d& force, double ga
           const float low = std::max(r * low_bx - width / 2, -low_bz), high = std::max(r * high_bx - width / 2, -high_bz);
           out[i] = std::min(corner, std::min(low, high));
           if (r == static_cast<float>(side))  // which face is the corner on?
-            direction_[i] = corner > out[i] ? 0 : hz == corner ? against_flat : slope == corner ? against_chamfer : 0;
+            direction_[i] = corner > out[i] ? 0 : hz == corner ? against_flat : slope == corner ? against_chamfer : against_wall;
         }
       }
       auto against = evidence_.col(p * z_.size() + h);
