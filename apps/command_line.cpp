@@ -154,6 +154,7 @@ std::optional<Invocation> read_command_line(int argc, char** argv) {
   CLI::App app("Nonlinear optimisation and model-predictive control for wrench allocation and contact-aware assembly.", "tenon");
   app.set_version_flag("--version", "tenon " TENON_VERSION);
   app.formatter(std::make_shared<HelpText>("tenon VERB ... ; tenon VERB --help tells more of one"));
+  app.require_subcommand(0, 1);  // so that the operand of `tenon bench envelope` is no second verb
   Invocation invocation;
   for (const Verb& verb : verbs()) add_verb(app, verb, invocation.arguments);
 

@@ -124,6 +124,7 @@ TEST_F(CommandLine, RefusesBadUsage) {
   expect_bad_input("allocate momav --wrenches x --solver pseudo-invers", "");
   expect_bad_input("solve hs071 hs035", "solve: 'hs035' is one word too many");
   expect_bad_input("solve hs71", "unknown problem");
+  expect_bad_input("solve envelope", "unknown problem \"envelope\"");  // a verb, but not here
   expect_bad_input("solve hs071 --solver ipop", "unknown solver");
   expect_bad_input("solve hs071 --tolerance much", "solve: --tolerance = much makes no sense (expected a number)");
   expect_bad_input("solve hs071 --tolerance nan", "solve: --tolerance: nan is not finite");
