@@ -45,8 +45,11 @@ job compare_momav "$tenon" compare momav --rows 20 --seed 1 --output "$records/c
 job flight "$tenon" fly orientation-sweep --output "$records/flight.csv" --events "$records/flight_events.csv"
 job cradle "$tenon" simulate cradle --output "$records/cradle.csv" --events "$records/cradle_events.csv"
 job bouncing_ball "$tenon" simulate bouncing-ball --output "$records/ball.csv" --events "$records/ball_events.csv"
+job plan "$tenon" plan bouncing-ball-catch --output "$records/plan.csv"
+job mpc "$tenon" mpc peg-in-hole --seed 3 --output "$records/peg.csv"
+job sweep "$tenon" sweep peg-in-hole --samples 100 --baselines --output "$records/sweep.csv"
 job bench_allocation "$tenon" bench allocation
-job report "$tenon" report "$records"/{hover,compare_classic,compare_momav,flight}.csv --output "$records/report.html"
+job report "$tenon" report "$records"/{hover,flight,plan,peg,sweep,compare_classic,compare_momav}.csv --output "$records/report.html"
 
 echo
 echo "Every job is done; the records are in $records. To see them, open $records/report.html in a browser."
