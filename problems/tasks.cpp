@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <sstream>
 
 #include "tenon/core/named_file.hpp"
 #include "tenon/core/nearest_name.hpp"
-#include "tenon/core/read_file.hpp"
 #include "tenon/problems/peg_in_hole/task.hpp"
 #include "tenon/problems/soft_walls/task.hpp"
 #include "tenon/problems/touch_down/task.hpp"
+#include "tenon/problems/toml/checked_keys.hpp"
 
 namespace tenon {
 
@@ -41,15 +40,6 @@ const TaskKind& kind_of(const toml_file::Document& document) {
   throw InputError(root.position("task"), "unknown task '" + wanted + "', the nearest is '" + nearest_name(wanted, names) + "'", "one of " + list);
 }
 
-/// `stiffness=2` is a parameter; with a dot it is a path in the file.
-std::vector<std::string> as_paths(std::vector<std::string> overrides) {
-  for (std::string& text : overrides) {
-    const std::string key = text.substr(0, text.find('='));
-    if (!key.empty() && key.find('.') == std::string::npos) text = "parameters." + text;
-  }
-  return overrides;
-}
-
 }  // namespace
 
 std::vector<std::string> builtin_tasks() {
@@ -61,19 +51,14 @@ std::string describe_builtin_task(const std::string& name) {
 }
 
 bool is_task(const std::string& name_or_path) {
-  const std::vector<std::string> names = builtin_tasks();
-  if (std::find(names.begin(), names.end(), name_or_path) != names.end()) return true;
+  if (std::ranges::count(builtin_tasks(), name_or_path) > 0) return true;
   if (!std::filesystem::is_regular_file(name_or_path)) return false;
-  std::istringstream lines(read_file(name_or_path));
-  for (std::string line; std::getline(lines, line) && !line.starts_with('[');) {
-    if (line.starts_with("task") && line.find('=') != std::string::npos) return true;
-  }
-  return false;
+  return toml_file::Document::read(name_or_path).root({}).has("task");
 }
 
 ControlTask make_task(const std::string& name_or_path, const std::vector<std::string>& overrides) {
   const NamedFile file = open_named_file("task", name_or_path, embedded_tasks());
-  const toml_file::Document document(file.text, file.name, as_paths(overrides));
+  const toml_file::Document document(file.text, file.name, with_parameters(overrides));
   ControlTask task = kind_of(document).make(document);
   task.name = task.scenery.title = std::filesystem::path(name_or_path).stem().string();
   return task;

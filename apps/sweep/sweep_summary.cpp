@@ -66,13 +66,12 @@ SweepSummary::SweepSummary(std::string scene, const std::vector<std::string>& na
   }
 }
 
-Json SweepSummary::contestant_json(const Contestant& contestant) const {
+void SweepSummary::set_figures(Json& json, const Contestant& contestant) const {
   Json percentiles = Json::object();
   for (const Spread& s : contestant.spreads) {
     percentiles.set(s.column, Json::object().set("median", s.median).set("p95", s.p95).set("max", s.max));
   }
-  return Json::object()
-      .set("samples", samples_)
+  json.set("samples", samples_)
       .set("successes", contestant.successes)
       .set("success_rate", samples_ > 0 ? static_cast<double>(contestant.successes) / samples_ : 0)
       .set("interval", Json::array().push(contestant.interval.lower).push(contestant.interval.upper))
@@ -81,16 +80,14 @@ Json SweepSummary::contestant_json(const Contestant& contestant) const {
 
 Json SweepSummary::json() const {
   Json result = Json::object().set("schema", 1).set("scene", scene_);
-  const Json controller = contestant_json(contestants_.front());
-  for (const std::string& key : controller.keys()) result.set(key, controller.at(key));
+  set_figures(result, contestants_.front());
   Json worst = Json::object().set("seed", static_cast<double>(worst_seed_));
   for (const auto& [name, value] : worst_) worst.set(name, value);
   result.set("worst", worst);
   Json baselines = Json::array();
   for (std::size_t i = 1; i < contestants_.size(); ++i) {
-    const Json figures = contestant_json(contestants_[i]);
     Json baseline = Json::object().set("name", contestants_[i].name);
-    for (const std::string& key : figures.keys()) baseline.set(key, figures.at(key));
+    set_figures(baseline, contestants_[i]);
     baselines.push(baseline);
   }
   if (contestants_.size() > 1) result.set("baselines", baselines);

@@ -33,7 +33,7 @@ class SweepSummary {
     std::vector<Spread> spreads;
   };
 
-  Json contestant_json(const Contestant& contestant) const;
+  void set_figures(Json& json, const Contestant& contestant) const;
 
   std::string scene_;
   int samples_ = 0;

@@ -81,11 +81,6 @@ class Path {
 
 }  // namespace
 
-double RandomNumbers::normal() {
-  const double radius = std::sqrt(-2 * std::log(1 - uniform(0, 1)));
-  return radius * std::cos(uniform(0, 2 * M_PI));
-}
-
 Eigen::Vector3d RandomNumbers::direction() {
   const double z = uniform(-1, 1), azimuth = uniform(0, 2 * M_PI), across = std::sqrt(std::max(0.0, 1 - z * z));
   return {across * std::cos(azimuth), across * std::sin(azimuth), z};

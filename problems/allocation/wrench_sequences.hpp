@@ -4,9 +4,9 @@
 #pragma once
 
 #include <cstdint>
-#include <random>
 #include <vector>
 
+#include "tenon/core/random.hpp"
 #include "tenon/problems/allocation/allocator.hpp"
 #include "tenon/problems/allocation/vehicle.hpp"
 
@@ -14,22 +14,15 @@ namespace tenon {
 
 inline constexpr double kSequenceStep = 1.0 / 240;  // s, from row to row
 
-class RandomNumbers {
+class RandomNumbers : public Random {
  public:
-  explicit RandomNumbers(std::uint64_t seed) : bits_(seed) {}
+  using Random::Random;
 
-  /// Uniform in [lower, upper).
-  double uniform(double lower, double upper) { return lower + (upper - lower) * static_cast<double>(bits_() >> 11) * 0x1p-53; }
-  /// Of mean 0 and deviation 1 (Box and Muller).
-  double normal();
   /// Uniform on the unit sphere, and in a ball.
   Eigen::Vector3d direction();
   Eigen::Vector3d in_ball(double radius);
   /// Uniform over all orientations.
   Eigen::Quaterniond orientation();
-
- private:
-  std::mt19937_64 bits_;
 };
 
 /// Hovering in all orientations: the weight, as the body turns under it. Once round each of three great circles through two arm axes (the

@@ -11,6 +11,7 @@
 #include "tenon/core/read_file.hpp"
 #include "tenon/problems/contact/scene_reader.hpp"
 #include "tenon/problems/contact/scene_scenery.hpp"
+#include "tenon/problems/toml/checked_keys.hpp"
 
 namespace tenon {
 
@@ -23,15 +24,6 @@ namespace {
 using toml_file::Table;
 
 const std::vector<std::string> kRootKeys{"name", "parameters", "simulation", "body", "shape", "joint", "contact", "force"};
-
-/// `height=2` is a parameter of the scene; with a dot it is a path in the file.
-std::vector<std::string> as_paths(std::vector<std::string> overrides) {
-  for (std::string& text : overrides) {
-    const std::string key = text.substr(0, text.find('='));
-    if (!key.empty() && key.find('.') == std::string::npos) text = "parameters." + text;
-  }
-  return overrides;
-}
 
 /// A parameter that the file does not have is a mistake, not a new one.
 void check_parameters(const std::string& text, const std::string& file, const std::vector<std::string>& overrides) {
@@ -57,7 +49,7 @@ double positive(const SceneValues& values, const Table& table, const std::string
 
 SceneFile parse_scene(const std::string& text, const std::string& file, const std::vector<std::string>& overrides) {
   check_parameters(text, file, overrides);
-  const Table root = toml_file::Document(text, file, as_paths(overrides)).root(kRootKeys);
+  const Table root = toml_file::Document(text, file, with_parameters(overrides)).root(kRootKeys);
   const SceneValues values(root);
   SceneFile out;
   std::string space = "planar";

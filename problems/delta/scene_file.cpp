@@ -12,6 +12,7 @@
 #include "tenon/core/nearest_name.hpp"
 #include "tenon/problems/delta/robot_file.hpp"
 #include "tenon/problems/delta/robot_keys.hpp"
+#include "tenon/problems/toml/checked_keys.hpp"
 #include "tenon/problems/toml/document.hpp"
 
 namespace tenon {
@@ -259,19 +260,10 @@ void read_start(const Table& root, Scene& scene) {
   }
 }
 
-/// NAME=VALUE is short for parameters.NAME=VALUE.
-Words with_parameters(Words overrides) {
-  for (std::string& text : overrides) {
-    const std::string key = text.substr(0, text.find('='));
-    if (key.find('.') == std::string::npos && std::ranges::find(kRootKeys, key) == kRootKeys.end()) text.insert(0, "parameters.");
-  }
-  return overrides;
-}
-
 }  // namespace
 
 Scene parse_scene(const std::string& text, const std::string& file, const std::vector<std::string>& overrides) {
-  const Table root = toml_file::Document(text, file, with_parameters(overrides)).root(kRootKeys);
+  const Table root = toml_file::Document(text, file, with_parameters(overrides, kRootKeys)).root(kRootKeys);
   Words variable = kControllerKeys;
   variable.insert(variable.end(), kReferenceKeys.begin(), kReferenceKeys.end());
   root.table("parameters", variable);  // refuses a key that nothing reads

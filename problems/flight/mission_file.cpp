@@ -11,6 +11,7 @@
 #include "tenon/core/nearest_name.hpp"
 #include "tenon/problems/allocation/vehicle_error.hpp"
 #include "tenon/problems/allocation/vehicle_file.hpp"
+#include "tenon/problems/toml/checked_keys.hpp"
 #include "tenon/problems/toml/document.hpp"
 
 namespace tenon {
@@ -28,18 +29,6 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 [[noreturn]] void refuse(const Table& table, const std::string& key, double value, const std::string& expected) {
   throw InputError(table.position(key), fmt::format("{} is {}", key, value), expected);
-}
-
-double positive(const Table& table, const std::string& key, double fallback) {
-  const double value = table.number(key, fallback);
-  if (!(value > 0)) refuse(table, key, value, "more than 0");
-  return value;
-}
-
-double not_negative(const Table& table, const std::string& key, double fallback) {
-  const double value = table.number(key, fallback);
-  if (!(value >= 0)) refuse(table, key, value, "0 or more");
-  return value;
 }
 
 /// The place of a word in its list.

@@ -10,6 +10,7 @@
 #include "tenon/core/named_file.hpp"
 #include "tenon/core/nearest_name.hpp"
 #include "tenon/problems/optimal_control/ocp_models.hpp"
+#include "tenon/problems/toml/checked_keys.hpp"
 #include "tenon/problems/toml/document.hpp"
 
 namespace tenon {
@@ -23,15 +24,6 @@ using toml_file::Table;
 constexpr const char* kKind = "scene to plan";
 const std::vector<std::string> kRootKeys{"name", "model", "contact", "parameters", "horizon"};
 const std::vector<std::string> kHorizonKeys{"duration", "intervals", "points", "tolerance", "refinements"};
-
-/// `goal=2` is a parameter of the scene; with a dot, or named as a key of the file, it is a path in it.
-std::vector<std::string> as_paths(std::vector<std::string> overrides) {
-  for (std::string& text : overrides) {
-    const std::string key = text.substr(0, text.find('='));
-    if (key.find('.') == std::string::npos && std::ranges::count(kRootKeys, key) == 0) text = "parameters." + text;
-  }
-  return overrides;
-}
 
 std::string one_of(const Table& table, const std::string& key, const std::string& fallback, const std::vector<std::string>& words) {
   const std::string word = table.text(key, fallback);
@@ -68,7 +60,7 @@ Value within(const Table& table, const std::string& key, Value value, Value leas
 }
 
 OcpScene parse_ocp_scene(const NamedFile& file, const std::vector<std::string>& overrides) {
-  const Table root = toml_file::Document(file.text, file.name, as_paths(overrides)).root(kRootKeys);
+  const Table root = toml_file::Document(file.text, file.name, with_parameters(overrides, kRootKeys)).root(kRootKeys);
   const OcpModel& model = read_model(root);
   OcpModelInput input = read_input(root, model);
   input.duration = model.duration, input.intervals = model.intervals;
@@ -100,13 +92,6 @@ std::vector<std::string> builtin_ocp_scenes() {
 
 std::string describe_builtin_ocp_scene(const std::string& name) {
   return description_of(name, embedded_ocp_scenes());
-}
-
-bool is_ocp_scene(const std::string& name_or_path) {
-  if (std::ranges::count(builtin_ocp_scenes(), name_or_path) > 0) return true;
-  if (!std::filesystem::is_regular_file(name_or_path)) return false;
-  const NamedFile file = open_named_file(kKind, name_or_path, {});
-  return toml_file::Document(file.text, file.name).root({}).has("model");
 }
 
 OcpScene load_ocp_scene(const std::string& name_or_path, const std::vector<std::string>& overrides) {

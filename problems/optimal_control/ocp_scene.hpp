@@ -26,9 +26,6 @@ struct OcpScene {
 std::vector<std::string> builtin_ocp_scenes();
 std::string describe_builtin_ocp_scene(const std::string& name);
 
-/// Whether the name or file is such a scene: a built-in one, or a file with a model.
-bool is_ocp_scene(const std::string& name_or_path);
-
 /// A built-in scene, or one from a file, with overrides `key.path=value`; a key without a dot that is no key of the file is a parameter.
 /// Throws InputError, with the place of what is wrong; std::invalid_argument for a name that is neither, the nearest named.
 OcpScene load_ocp_scene(const std::string& name_or_path, const std::vector<std::string>& overrides = {});

@@ -11,7 +11,7 @@
 #include "tenon/problems/peg_in_hole/modes.hpp"
 #include "tenon/problems/peg_in_hole/plant.hpp"
 #include "tenon/problems/peg_in_hole/scenery.hpp"
-#include "tenon/problems/task_keys.hpp"
+#include "tenon/problems/toml/checked_keys.hpp"
 
 namespace tenon::peg {
 

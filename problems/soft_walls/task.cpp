@@ -1,7 +1,7 @@
 #include "tenon/problems/soft_walls/task.hpp"
 
 #include "tenon/problems/soft_walls/plant.hpp"
-#include "tenon/problems/task_keys.hpp"
+#include "tenon/problems/toml/checked_keys.hpp"
 
 namespace tenon::soft_walls {
 

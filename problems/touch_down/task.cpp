@@ -1,6 +1,6 @@
 #include "tenon/problems/touch_down/task.hpp"
 
-#include "tenon/problems/task_keys.hpp"
+#include "tenon/problems/toml/checked_keys.hpp"
 #include "tenon/problems/touch_down/horizon.hpp"
 #include "tenon/problems/touch_down/plane_estimator.hpp"
 #include "tenon/problems/touch_down/plant.hpp"

@@ -1,6 +1,8 @@
-#include "tenon/problems/task_keys.hpp"
+#include "tenon/problems/toml/checked_keys.hpp"
 
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace tenon {
 
@@ -35,6 +37,15 @@ double not_negative(const Table& table, const std::string& key, double fallback)
 int positive_integer(const Table& table, const std::string& key, int fallback) {
   const int value = table.integer(key, fallback);
   return checked(table, key, value, value > 0, "1 or more");
+}
+
+std::vector<std::string> with_parameters(std::vector<std::string> overrides, const std::vector<std::string>& root_keys) {
+  for (std::string& text : overrides) {
+    const std::string key = text.substr(0, text.find('='));
+    const bool is_path = key.empty() || key.find('.') != std::string::npos || std::ranges::count(root_keys, key) > 0;
+    if (!is_path) text.insert(0, "parameters.");
+  }
+  return overrides;
 }
 
 }  // namespace tenon

@@ -1,4 +1,4 @@
-// What the readers of task files share: keys with the range that makes sense.
+// What the readers of scene files share: keys with the range that makes sense, and short ways to override them.
 #pragma once
 
 #include <string>
@@ -13,5 +13,8 @@ toml_file::Table required_table(const toml_file::Table& root, const std::string&
 double positive(const toml_file::Table& table, const std::string& key, double fallback);
 double not_negative(const toml_file::Table& table, const std::string& key, double fallback);
 int positive_integer(const toml_file::Table& table, const std::string& key, int fallback);
+
+/// Overrides in which NAME=VALUE has become parameters.NAME=VALUE; with a dot, or named as one of the root keys, it is a path in the file.
+std::vector<std::string> with_parameters(std::vector<std::string> overrides, const std::vector<std::string>& root_keys = {});
 
 }  // namespace tenon
