@@ -51,13 +51,13 @@ Vector nonnegative_least_squares(const Eigen::MatrixXd& A, const Vector& b, doub
         const double at = y[positive[i]], to = target[Eigen::Index(i)];
         if (to <= 0 && at / (at - to) <= alpha) alpha = at / (at - to), first = i;
       }
-      y(positive) += alpha * (target - Vector(y(positive)));
+      for (std::size_t i = 0; i < positive.size(); ++i) y[positive[i]] += alpha * (target[Eigen::Index(i)] - y[positive[i]]);
       y[positive[first]] = 0;
       refused[std::size_t(positive[first])] = false;
       positive.erase(positive.begin() + static_cast<std::ptrdiff_t>(first));
       target = least_squares(A, positive, b);
     }
-    y(positive) = target;
+    for (std::size_t i = 0; i < positive.size(); ++i) y[positive[i]] = target[Eigen::Index(i)];
   }
   return y;
 }
