@@ -11,7 +11,6 @@
 #include "tenon/apps/comma_list.hpp"
 #include "tenon/apps/interrupt.hpp"
 #include "tenon/apps/make_report.hpp"
-#include "tenon/apps/named_problem.hpp"
 #include "tenon/apps/progress.hpp"
 #include "tenon/apps/result_json.hpp"
 #include "tenon/apps/table.hpp"
@@ -23,7 +22,7 @@ namespace tenon {
 
 namespace {
 
-constexpr int kTimedRuns = 5;
+constexpr double kUsualTimeLimit = 10;  // s
 
 bool is_vehicle(const std::string& name) {
   const std::vector<std::string> vehicles = builtin_vehicles();
@@ -64,6 +63,18 @@ std::vector<SolverDescription> chosen_solvers(const Arguments& arguments, const 
     chosen.push_back(*at);
   }
   return chosen;
+}
+
+Options comparison_options(const Arguments& arguments, const Options& of_problem) {
+  Options options = arguments.options(of_problem);
+  if (!arguments.time_limit) options.time_limit = kUsualTimeLimit;
+  return options;
+}
+
+Measurement timed(const NamedProblem& named, const std::string& solver, const Options& options) {
+  Measurement once = measure(named, solver, options, 0);
+  if (!once.refusal.empty() || once.time > kWorthRepeating) return once;
+  return measure(named, solver, options, kTimedRuns);
 }
 
 std::optional<CsvWriter> comparison_record(const Arguments& arguments) {
@@ -109,7 +120,7 @@ int run_compare(const Arguments& arguments) {
   const std::vector<SolverDescription> solvers = chosen_solvers(arguments);
   std::vector<NamedProblem> problems;  // all of them before the first is solved: a name that is wrong shows at once
   for (const std::string& name : arguments.names) problems.push_back(load_problem(name));
-  const Options options = arguments.options(problems.front().options);
+  const Options options = comparison_options(arguments, problems.front().options);
 
   Table table({"problem", "solver", "status", "objective", "residual", "iterations", "evaluations", "time"});
   Json rows = Json::array();
@@ -121,7 +132,7 @@ int run_compare(const Arguments& arguments) {
     for (const NamedProblem& named : problems) {
       for (const SolverDescription& solver : solvers) {
         if (interrupted()) return kInterrupted;
-        const Measurement m = measure(named, solver.name, options, kTimedRuns);
+        const Measurement m = timed(named, solver.name, options);
         table.add(table_row(named.name, m));
         if (record && m.refusal.empty()) {
           write_comparison(*record, named.name, solver.name, to_string(m.result.status), m.result.objective, m.result.residual.max(),
@@ -152,7 +163,8 @@ int run_compare(const Arguments& arguments) {
   fmt::print("{}\n", table.text());
   fmt::print(
       "evaluations: objective/gradient/constraints/Jacobian/Hessian of one solve; residual: the largest of the unscaled KKT residual\n");
-  fmt::print("time: the solve alone, median of {}; tolerance {} for all, printing off\n", kTimedRuns, options.tolerance);
+  fmt::print("time: the solve alone, median of {} below {} s, at most {:g} s; tolerance {} for all, printing off\n", kTimedRuns, kWorthRepeating,
+             options.time_limit, options.tolerance);
   print_solvers(solvers);
   for (const std::string& refusal : refusals) fmt::print("{}\n", refusal);
   return kFinished;

@@ -8,6 +8,7 @@
 
 #include "tenon/apps/arguments.hpp"
 #include "tenon/apps/json.hpp"
+#include "tenon/apps/named_problem.hpp"
 #include "tenon/core/csv.hpp"
 #include "tenon/solvers/make_solver.hpp"
 
@@ -16,6 +17,15 @@ namespace tenon {
 /// Of the `known` back ends those of --solvers, else every one that is available. Throws std::invalid_argument for one that is not known
 /// or not available.
 std::vector<SolverDescription> chosen_solvers(const Arguments& arguments, const std::vector<SolverDescription>& known = list_solvers());
+
+inline constexpr int kTimedRuns = 5;            // of a solve, for the clock
+inline constexpr double kWorthRepeating = 0.1;  // s; a longer solve is timed once
+
+/// What is asked for; without a time limit 10 s: one creeping solver shall not hold up the rest.
+Options comparison_options(const Arguments& arguments, const Options& of_problem = {});
+
+/// One problem on one back end, timed over kTimedRuns.
+Measurement timed(const NamedProblem& named, const std::string& solver, const Options& options);
 
 /// The record of a comparison: where --output says, else beside the report; nothing where neither is asked for. Both paths are checked.
 std::optional<CsvWriter> comparison_record(const Arguments& arguments);

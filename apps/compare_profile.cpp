@@ -12,7 +12,6 @@
 #include "tenon/apps/compare.hpp"
 #include "tenon/apps/interrupt.hpp"
 #include "tenon/apps/make_report.hpp"
-#include "tenon/apps/named_problem.hpp"
 #include "tenon/apps/profile_picture.hpp"
 #include "tenon/apps/progress.hpp"
 #include "tenon/apps/table.hpp"
@@ -23,9 +22,6 @@ namespace tenon {
 
 namespace {
 
-constexpr int kTimedRuns = 5;
-constexpr double kWorthRepeating = 0.1;   // s; a longer solve is timed once
-constexpr double kUsualTimeLimit = 10;    // s, where none is given: one creeping solver shall not hold up the rest
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 std::vector<std::string> nl_files(const std::string& folder) {
@@ -38,12 +34,6 @@ std::vector<std::string> nl_files(const std::string& folder) {
   if (files.empty()) throw std::invalid_argument(fmt::format("{}: there is no .nl file (expected one or more)", folder));
   std::sort(files.begin(), files.end());
   return files;
-}
-
-Measurement timed(const NamedProblem& named, const std::string& solver, const Options& options) {
-  Measurement once = measure(named, solver, options, 0);
-  if (!once.refusal.empty() || once.time > kWorthRepeating) return once;
-  return measure(named, solver, options, kTimedRuns);
 }
 
 void write_problem(CsvWriter& table, const NamedProblem& named, const Measurement& m) {
@@ -77,8 +67,7 @@ void write_picture(const std::string& path, const std::string& title, const std:
 int compare_profile(const Arguments& arguments) {
   if (!arguments.names.empty()) throw std::invalid_argument("compare: --profile stands alone (expected no further problem)");
   check_report(arguments);
-  Options options = arguments.options();
-  if (!arguments.time_limit) options.time_limit = kUsualTimeLimit;
+  const Options options = comparison_options(arguments);
   const std::vector<SolverDescription> solvers = chosen_solvers(arguments);
   std::vector<std::string> names, columns = {"cost", "ratio"};
   for (const SolverDescription& s : solvers) names.push_back(s.name);

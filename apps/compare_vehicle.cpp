@@ -17,7 +17,6 @@ namespace tenon {
 
 namespace {
 
-constexpr int kTimedRuns = 5;
 constexpr int kDefaultRows = 200;
 constexpr const char* kNewtonKkt = "newton-kkt";              // on the fixed-size problem
 constexpr const char* kNewtonKktSparse = "newton-kkt-sparse";  // the same loop on the lifted problem
