@@ -15,13 +15,7 @@ class CommandLine : public testing::Test {
 
   /// Exit 2, one line that begins so, no file left behind.
   void expect_bad_input(const std::string& arguments, const std::string& line) {
-    const Ended ended = run(arguments);
-    EXPECT_EQ(ended.code, 2) << arguments;
-    EXPECT_TRUE(is_one_line(ended.err, "tenon: " + line)) << arguments << "\n" << ended.err;
-    EXPECT_EQ(ended.out, "") << arguments;
-    EXPECT_FALSE(folder_.has("out.csv")) << arguments;
-    EXPECT_FALSE(folder_.has("out.csv.partial")) << arguments;
-    EXPECT_FALSE(folder_.has("trace.jsonl.partial")) << arguments;
+    tenon::expect_bad_input(folder_, arguments, line);
   }
 
   /// A bad log, allocated.

@@ -26,10 +26,7 @@ class EstimateVerb : public testing::Test {
     return Json::parse(ended.out, "stdout");
   }
   void expect_bad_input(const std::string& record, const std::string& line) {
-    const Ended ended = run("estimate peg-in-hole --measurements " + record + " --output out.csv");
-    EXPECT_EQ(ended.code, 2);
-    EXPECT_TRUE(is_one_line(ended.err, "tenon: " + line)) << ended.err;
-    EXPECT_FALSE(folder_->has("out.csv"));
+    tenon::expect_bad_input(*folder_, "estimate peg-in-hole --measurements " + record + " --output out.csv", line);
   }
 
   static ScratchFolder* folder_;

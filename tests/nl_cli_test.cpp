@@ -25,10 +25,7 @@ class NlCommands : public testing::Test {
   Ended run(const std::string& arguments) { return run_tenon(folder_, arguments); }
 
   void expect_bad_input(const std::string& arguments, const std::string& line) {
-    const Ended ended = run(arguments);
-    EXPECT_EQ(ended.code, 2) << arguments;
-    EXPECT_TRUE(is_one_line(ended.err, "tenon: " + line)) << arguments << "\n" << ended.err;
-    EXPECT_EQ(ended.out, "") << arguments;
+    tenon::expect_bad_input(folder_, arguments, line);
   }
 
   ScratchFolder folder_;

@@ -12,11 +12,7 @@ class PlanVerb : public testing::Test {
   Ended run(const std::string& arguments) { return run_tenon(folder_, "plan " + arguments); }
 
   void expect_bad_input(const std::string& arguments, const std::string& line) {
-    const Ended ended = run(arguments + " --output out.csv");
-    EXPECT_EQ(ended.code, 2) << arguments;
-    EXPECT_TRUE(is_one_line(ended.err, "tenon: " + line)) << arguments << "\n" << ended.err;
-    EXPECT_EQ(ended.out, "") << arguments;
-    EXPECT_FALSE(folder_.has("out.csv") || folder_.has("out.csv.partial")) << arguments;
+    tenon::expect_bad_input(folder_, "plan " + arguments + " --output out.csv", line);
   }
 
   ScratchFolder folder_;

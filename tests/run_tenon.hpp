@@ -1,6 +1,7 @@
 // The real binary, run from a test: its exit code and what it prints.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <cstdlib>
@@ -25,6 +26,17 @@ inline Ended run_tenon(const ScratchFolder& folder, const std::string& arguments
 /// Whether a text is one line that begins and goes on as given.
 inline bool is_one_line(const std::string& text, const std::string& begin) {
   return text.starts_with(begin) && text.find('\n') == text.size() - 1;
+}
+
+/// Exit code 2, one line that begins as given, no result, and no file that was not there before.
+inline void expect_bad_input(const ScratchFolder& folder, const std::string& arguments, const std::string& line) {
+  std::set<std::string> names = folder.names();
+  names.insert({"stdout.txt", "stderr.txt"});
+  const Ended ended = run_tenon(folder, arguments);
+  EXPECT_EQ(ended.code, 2) << arguments;
+  EXPECT_TRUE(is_one_line(ended.err, "tenon: " + line)) << arguments << "\n" << ended.err;
+  EXPECT_EQ(ended.out, "") << arguments;
+  EXPECT_EQ(folder.names(), names) << arguments;
 }
 
 }  // namespace tenon

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <string>
 
 namespace tenon {
@@ -34,6 +35,11 @@ class ScratchFolder {
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   }
   bool has(const std::string& name) const { return std::filesystem::exists(path(name)); }
+  std::set<std::string> names() const {
+    std::set<std::string> all;
+    for (const auto& entry : std::filesystem::directory_iterator(path_)) all.insert(entry.path().filename().string());
+    return all;
+  }
 
  private:
   std::string path_;

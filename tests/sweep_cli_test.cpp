@@ -22,10 +22,7 @@ class SweepVerb : public testing::Test {
     return folder_.read("out.csv");
   }
   void expect_bad_input(const std::string& arguments, const std::string& line) {
-    const Ended ended = run_tenon(folder_, arguments);
-    EXPECT_EQ(ended.code, 2) << arguments;
-    EXPECT_TRUE(is_one_line(ended.err, "tenon: " + line)) << ended.err;
-    EXPECT_FALSE(folder_.has("out.csv") || folder_.has("out.csv.partial")) << arguments;
+    tenon::expect_bad_input(folder_, arguments, line);
   }
 
   ScratchFolder folder_;
