@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tenon/problems/peg_in_hole/channels.hpp"
-
 namespace tenon::peg {
 
 namespace {
@@ -51,6 +49,7 @@ void InsertionPlant::reset(std::uint64_t seed) {
     for (int i = 0; i < 3; ++i) hole_[i] += world_.prior.half_width[i] * random_.uniform(-1, 1);
   }
   steps_ = 0;
+  pending_.clear();
   pose_ = reference_ = world_.start;
   for (Vector3d* zero : {&rate_, &reference_rate_, &stiffness_}) zero->setZero();
   contacts_ = {};
@@ -60,13 +59,18 @@ void InsertionPlant::reset(std::uint64_t seed) {
   std::ranges::fill(window_, 0.0);
 }
 
-void InsertionPlant::advance(double t_end, ConstVectorRef commands) {
+void InsertionPlant::act(ConstVectorRef commands) {
   const double lever = world_.geometry.lever;
   reference_ = to_millimetres(commands.segment<3>(kReference), lever);
   reference_rate_ = to_millimetres(commands.segment<3>(kReferenceRate), lever);
   stiffness_ = stiffness_to_millimetres(commands.segment<3>(kStiffness), lever);
+}
+
+void InsertionPlant::advance(double t_end, ConstVectorRef commands) {
+  pending_.push_back({steps_ + std::lround(world_.delay / kStep), commands});
   const long end = std::lround(t_end / kStep);
   while (steps_ < end && !finished()) {
+    for (; !pending_.empty() && pending_.front().step <= steps_; pending_.pop_front()) act(pending_.front().commands);
     step();
     reference_ += kStep * reference_rate_;
     ++steps_;

@@ -5,10 +5,12 @@
 // What moves the peg is the derived plant's affair, in steps of 20 us; its inner loop runs once a millisecond.
 #pragma once
 
+#include <deque>
 #include <vector>
 
 #include "tenon/core/plant.hpp"
 #include "tenon/core/random.hpp"
+#include "tenon/problems/peg_in_hole/channels.hpp"
 #include "tenon/problems/peg_in_hole/geometry.hpp"
 
 namespace tenon::peg {
@@ -30,6 +32,7 @@ struct World {
   double force_noise = 0.1;      // N, sd
   double largest_spring = 10.5;  // N, in x and z: the inner loop pushes no harder
   double force_filter = 0.005;   // s
+  double delay = 0;              // s, by which commands act late
   double success_depth = 19.8;   // mm
   Vector3d start{0, 5, 0};       // mm
   HolePrior prior;
@@ -80,6 +83,12 @@ class InsertionPlant : public Plant {
   Contacts contacts_;
 
  private:
+  struct Pending {
+    long step;  // at which they act
+    Eigen::Vector<double, kCommands> commands;
+  };
+
+  void act(ConstVectorRef commands);
   void judge();
   double time() const;
 
@@ -87,6 +96,7 @@ class InsertionPlant : public Plant {
   Random random_{0};
   bool surprises_ = false;  // seed 0: the hole in the middle, no noise
   long steps_ = 0;
+  std::deque<Pending> pending_;
   Vector3d hole_;
 
   bool success_ = false;

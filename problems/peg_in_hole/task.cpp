@@ -23,14 +23,14 @@ constexpr double kMillimetre = 1e-3;   // m
 constexpr double kInnerPeriod = 1e-3;  // s, of the impedance loop
 
 std::optional<Table> plant_table(const Table& root) {
-  return root.table("plant", {"mass", "contact_stiffness", "contact_damping_ratio", "encoder_noise", "force_noise", "robot", "peg_mass",
-                              "peg_inertia", "unknown_mass"});
+  return root.table("plant", {"mass", "contact_stiffness", "contact_damping_ratio", "encoder_noise", "force_noise", "clearance", "delay",
+                              "robot", "peg_mass", "peg_inertia", "unknown_mass"});
 }
 
-World read_world(const Table& root, const Table& parameters) {
+World read_world(const Table& root, const Table& parameters, const Geometry& believed) {
   World world;
-  const double lever = world.geometry.lever;
-  world.geometry.clearance = positive(parameters, "clearance", 2e-4) / kMillimetre;
+  world.geometry = believed;
+  const double lever = believed.lever;
   world.friction = not_negative(parameters, "friction", world.friction);
   const Vector3d offset(parameters.number("offset_x", 0), parameters.number("offset_z", 0), parameters.number("offset_theta", 0));
   world.prior.middle = to_millimetres(offset, lever);
@@ -47,6 +47,8 @@ World read_world(const Table& root, const Table& parameters) {
     world.contact_damping_ratio = not_negative(*table, "contact_damping_ratio", world.contact_damping_ratio);
     world.encoder_noise = not_negative(*table, "encoder_noise", 5e-6) / kMillimetre;
     world.force_noise = not_negative(*table, "force_noise", world.force_noise);
+    world.delay = not_negative(*table, "delay", 0);
+    if (table->has("clearance")) world.geometry.clearance = positive(*table, "clearance", 0) / kMillimetre;
   }
   return world;
 }
@@ -78,9 +80,9 @@ std::unique_ptr<Plant> make_plant(const World& world, const std::optional<Holder
   return std::make_unique<PegPlant>(world);
 }
 
-AssemblyProblem read_horizon(const Table& root, const World& world) {
+AssemblyProblem read_horizon(const Table& root, const World& world, const Geometry& believed) {
   AssemblyProblem problem;
-  problem.geometry = world.geometry;
+  problem.geometry = believed;
   problem.pose = world.start;
   problem.depth += world.prior.half_width[1];
   if (const auto table = root.table("horizon", {"intervals", "interval", "speed", "smoothing", "complementarity"})) {
@@ -99,11 +101,13 @@ ControlTask make_task(const toml_file::Document& document) {
   const Table root = document.root({"task", "parameters", "uncertainty", "horizon", "plant"});
   const Table parameters = required_table(
       root, "parameters", {"clearance", "friction", "offset_x", "offset_z", "offset_theta", "rate", "iterations", "duration"});
-  const World world = read_world(root, parameters);
+  Geometry believed;
+  believed.clearance = positive(parameters, "clearance", 2e-4) / kMillimetre;
+  const World world = read_world(root, parameters, believed);
   const std::optional<Holder> holder = read_holder(root, world);
-  const AssemblyProblem problem = read_horizon(root, world);
+  const AssemblyProblem problem = read_horizon(root, world, believed);
   // What is believed: the hole in the middle of what it was drawn from, without the scene's own offset.
-  HoleEstimatorOptions belief{.geometry = world.geometry, .prior = {.half_width = world.prior.half_width}};
+  HoleEstimatorOptions belief{.geometry = believed, .prior = {.half_width = world.prior.half_width}};
   const bool height_is_known = world.prior.half_width[1] == 0;
   belief.cells = height_is_known ? Eigen::Array3i(61, 1, 31) : Eigen::Array3i(61, 13, 21);
 
@@ -124,9 +128,9 @@ ControlTask make_task(const toml_file::Document& document) {
   task.options.largest_violation = 0.5;
 
   const Impedance soft{.stiffness = {0.5, 1, 2.5}};
-  task.baselines.push_back({"straight", std::make_unique<StraightDown>(world.geometry, problem.impedance, world.start, problem.depth, task.period)});
-  task.baselines.push_back({"soft", std::make_unique<StraightDown>(world.geometry, soft, world.start, problem.depth, task.period)});
-  task.baselines.push_back({"tilt", std::make_unique<TiltAndSlide>(world.geometry, problem.impedance, world.start, problem.depth, task.period)});
+  task.baselines.push_back({"straight", std::make_unique<StraightDown>(believed, problem.impedance, world.start, problem.depth, task.period)});
+  task.baselines.push_back({"soft", std::make_unique<StraightDown>(believed, soft, world.start, problem.depth, task.period)});
+  task.baselines.push_back({"tilt", std::make_unique<TiltAndSlide>(believed, problem.impedance, world.start, problem.depth, task.period)});
   task.modes = linear_modes(world, problem.impedance, kInnerPeriod, holder ? kInnerPeriod : 0);
   task.capture = {"offset of the hole, m", kMillimetre * 5, [world, holder](double offset) {
                     World beside = world;
