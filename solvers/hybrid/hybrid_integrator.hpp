@@ -8,12 +8,20 @@
 // change of sign does not know, and both flows must see the same events.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <vector>
 
 #include "tenon/solvers/hybrid/flow.hpp"
 
 namespace tenon {
+
+/// Two instants that nobody can tell apart.
+inline bool is_same_time(double a, double b) {
+  constexpr double kSameTime = 4e-16;  // relative
+  return std::abs(a - b) <= kSameTime * std::max(std::abs(a), std::abs(b));
+}
 
 class HybridIntegrator final : public Integrator {
  public:
@@ -31,18 +39,20 @@ class HybridIntegrator final : public Integrator {
   bool settle(DaeState& state, std::span<const int> fired, bool is_consistent);
   bool restart(DaeState& state, std::span<const int> fired, bool is_consistent);
   bool strike(DaeState& state, std::span<const int> fired);
-  bool find_crossing(Crossing& crossing);
-  double locate(int guard, double a, double b);
-  bool land(Crossing& crossing, DaeState& state);
   bool write_outputs(double t_last, bool is_event = false);
   double next_output() const { return t_start_ + static_cast<double>(outputs_) * options_.output_step; }
   bool emit(const DaeState& state);
-  bool look(double t);
-  double guard_at(double t, int guard);
-  void evaluate_guards(const DaeState& state, Vector& values);
   std::string why_inconsistent(const DaeState& state);
   std::string suspects(const DaeState& state) const;
   bool fail(IntegrationStatus status, const DaeState& state, const std::string& why);
+
+  // crossing.cpp
+  void evaluate_guards(const DaeState& state, Vector& values);
+  bool look(double t);
+  double guard_at(double t, int guard);
+  bool find_crossing(Crossing& crossing);
+  double locate(int guard, double a, double b);
+  bool land(Crossing& crossing, DaeState& state);
 
   const Dae& dae_;
   IntegratorOptions options_;
