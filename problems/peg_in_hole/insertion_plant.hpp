@@ -59,6 +59,7 @@ class InsertionPlant : public Plant {
 
   struct Contacts {
     std::array<double, kContacts> gap{}, pressure{};  // mm, N
+    Eigen::Matrix<double, 2, kContacts> pushes = Eigen::Matrix<double, 2, kContacts>::Zero();  // N: on the peg, of each contact with its friction
     Vector3d force{0, 0, 0};                          // on the pose, N
   };
 
@@ -92,6 +93,7 @@ class InsertionPlant : public Plant {
   bool success_ = false;
   long first_touch_ = -1;  // step
   double time_ = 0, first_touch_peak_ = 0, largest_force_ = 0, sustained_force_ = 0;
+  double tick_peak_ = 0;  // N: the largest force since the commands last changed
   double window_sum_ = 0, millisecond_sum_ = 0;
   std::vector<double> window_;
 };
