@@ -68,7 +68,7 @@ Scenery belief_scenery(const ControlTask& task) {
   for (SceneryEstimate& estimate : scenery.estimates) estimate.across.truth = estimate.upward.truth = "";
   for (const SceneryPlot& plot : task.scenery.plots) {
     for (const SceneryPlot::Band& band : plot.bands)
-      scenery.plots.push_back({.title = "Mean and 2 standard deviations", .unit = plot.unit, .columns = {band.mean}, .bands = {band}});
+      scenery.plots.push_back({.title = band.mean + " and 2 standard deviations", .unit = plot.unit, .columns = {band.mean}, .bands = {band}});
   }
   return scenery;
 }
