@@ -145,7 +145,8 @@ TEST_F(ReportPlan, APegsReportHasItsHorizonAndItsBelief) {
   browser().open(folder_.path("peg.html") + "#t=0.4", kAnimated);
   const CsvTable record = read_csv(folder_.path("peg.csv"));
   const std::size_t row = 20;  // of 50 Hz
-  const json ghosts = value("report.parts[0].animation.ghosts[0].ghosts.map(({group}) => [group.position.x, group.position.y, 2 * Math.asin(group.quaternion.z)])");
+  const json ghosts = value("report.parts[0].animation.ghosts[0].ghosts.map(({group}) => "
+                            "[group.position.x, group.position.y, 2 * Math.asin(group.quaternion.z)])");
   ASSERT_EQ(ghosts.size(), 15u);
   for (std::size_t i = 0; i < ghosts.size(); ++i) {
     const std::array<const char*, 3> names{"plan_x", "plan_z", "plan_theta"};
@@ -159,12 +160,16 @@ TEST_F(ReportPlan, APegsReportHasItsHorizonAndItsBelief) {
   EXPECT_EQ(value("report.parts[0].animation.ellipses.length"), 2);
   browser().evaluate("report.showAll()");
   expect_silence();
+  browser().open(folder_.path("peg.html"), kAnimated, 390);
+  browser().evaluate("report.showAll()");
+  EXPECT_LE(value("document.documentElement.scrollWidth").get<int>(), 390) << "of a phone";
 }
 
 TEST_F(ReportPlan, ASweepWithBaselinesHasAMapALineAndACurveForEach) {
   std::string rows = "seed,hole_x,success,time,soft.success,soft.time\n";
   for (int k = 1; k <= 20; ++k) {
-    rows += std::to_string(k) + "," + std::to_string(1e-4 * k) + ",1," + std::to_string(1 + 0.01 * k) + (k > 15 ? ",0,5\n" : ",1," + std::to_string(1.5 + 0.01 * k) + "\n");
+    rows += std::to_string(k) + "," + std::to_string(1e-4 * k) + ",1," + std::to_string(1 + 0.01 * k) +
+            (k > 15 ? ",0,5\n" : ",1," + std::to_string(1.5 + 0.01 * k) + "\n");
   }
   open({folder_.write("sweep.csv", rows)});
   browser().evaluate("report.showAll()");
@@ -176,6 +181,14 @@ TEST_F(ReportPlan, ASweepWithBaselinesHasAMapALineAndACurveForEach) {
   EXPECT_EQ(cells[1][1], "15 of 20");
   EXPECT_EQ(cells[1][3], "1.6 / 5");
   EXPECT_EQ(value("document.querySelectorAll('.success-map').length"), 2);
+  EXPECT_TRUE(browser().wait_for("report.parts[0].contestants[1].canvas.places"));
+  // The pointer beside the last dot of the second map.
+  const char* point = R"((() => {
+    const {canvas, note} = report.parts[0].contestants[1], [x, y] = canvas.places[19], box = canvas.getBoundingClientRect();
+    canvas.dispatchEvent(new PointerEvent("pointermove", {clientX: box.left + x + 1, clientY: box.top + y, bubbles: true}));
+    return note.textContent;
+  })())";
+  EXPECT_EQ(value(point), "--seed 20: failed");
   EXPECT_EQ(value("[...document.querySelectorAll('summary')].map((s) => s.textContent)"), (json{"Failures of mpc (0)", "Failures of soft (5)"}));
   EXPECT_EQ(value("[...document.querySelectorAll('h3')].map((h) => h.textContent)"), (json{"Where", "What came of it", "What was drawn"}));
   expect_silence();

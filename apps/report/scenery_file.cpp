@@ -45,7 +45,8 @@ class Check {
     });
     each(root, "lenses", [this](const std::string& at, const Json& json) {
       one_of(at + ".body", member(json, "body"), bodies_);
-      if (const Json extent = member(json, "extent"); !extent.is_number() || !(extent.number() > 0)) fail(at + ".extent is no length", "a number of metres");
+      const Json extent = member(json, "extent");
+      if (!extent.is_number() || !(extent.number() > 0)) fail(at + ".extent is no length", "a number of metres");
     });
     each(root, "estimates", [this](const std::string& at, const Json& json) {
       for (const char* axis : {"across", "upward"}) {
@@ -104,7 +105,8 @@ class Check {
   }
 
   int count(const std::string& at, const Json& json) {
-    if (!json.is_number() || !(json.number() >= 1 && json.number() <= kMostNumbered)) fail(at + " is no count", fmt::format("1 to {}", kMostNumbered));
+    if (!json.is_number() || !(json.number() >= 1 && json.number() <= kMostNumbered))
+      fail(at + " is no count", fmt::format("1 to {}", kMostNumbered));
     return static_cast<int>(json.number());
   }
 
@@ -113,7 +115,8 @@ class Check {
     if (!json.is_text()) return value(at, json);
     const std::string name = json.as_text();
     const std::size_t place = name.find('#');
-    for (int i = 1; i <= count; ++i) value(at, Json(place == std::string::npos ? name : std::string(name).replace(place, 1, std::to_string(i))));
+    for (int i = 1; i <= count; ++i)
+      value(at, Json(place == std::string::npos ? name : std::string(name).replace(place, 1, std::to_string(i))));
   }
 
   void values(const std::string& at, const Json& json, std::size_t expected) {

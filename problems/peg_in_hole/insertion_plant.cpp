@@ -16,7 +16,8 @@ constexpr std::array<const char*, 9> kVerdictNames{"hole_x",           "hole_z",
                                                    "first_touch_peak", "sustained_force", "largest_force", "depth"};
 constexpr std::array<const char*, 14> kOutputNames{"x",          "z",  "theta", "vx", "vz",    "omega",     "hole_x", "hole_z",
                                                    "hole_theta", "Fx", "Fz",    "My", "depth", "peak_force"};
-constexpr std::array<const char*, 4> kContactOutputs{"gap_", "lambda_", "push_x_", "push_z_"};
+constexpr std::array<const char*, 5> kContactOutputs{"gap_", "lambda_", "push_x_", "push_z_", "mode_"};
+constexpr int kContactMode = 2;  // 0: free
 
 }  // namespace
 
@@ -57,6 +58,7 @@ void InsertionPlant::reset(std::uint64_t seed) {
   contacts_ = {};
   success_ = false;
   first_touch_ = -1;
+  touched_ = {};
   time_ = first_touch_peak_ = tick_peak_ = largest_force_ = sustained_force_ = window_sum_ = millisecond_sum_ = 0;
   std::ranges::fill(window_, 0.0);
 }
@@ -67,6 +69,7 @@ void InsertionPlant::advance(double t_end, ConstVectorRef commands) {
   reference_rate_ = to_millimetres(commands.segment<3>(kReferenceRate), lever);
   stiffness_ = stiffness_to_millimetres(commands.segment<3>(kStiffness), lever);
   tick_peak_ = 0;
+  touched_ = {};
   const long end = std::lround(t_end / kStep);
   while (steps_ < end && !finished()) {
     step();
@@ -106,6 +109,7 @@ void InsertionPlant::judge() {
   if (force > 0 && first_touch_ < 0) first_touch_ = steps_;
   largest_force_ = std::max(largest_force_, force);
   tick_peak_ = std::max(tick_peak_, force);
+  for (std::size_t i = 0; i < kContacts; ++i) touched_[i] = touched_[i] || contacts_.pressure[i] > 0;
   if (first_touch_ >= 0 && kStep * static_cast<double>(steps_ - first_touch_) <= kFirstTouch)
     first_touch_peak_ = std::max(first_touch_peak_, force);
 
@@ -143,8 +147,9 @@ void InsertionPlant::outputs(VectorRef values) const {
   auto each = values.segment(14, static_cast<int>(kContactOutputs.size()) * kContacts);
   for (int i = 0; i < kContacts; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    const double of_contact[] = {1e-3 * contacts_.gap[at], contacts_.pressure[at], contacts_.pushes(0, i), contacts_.pushes(1, i)};
-    for (int quantity = 0; quantity < 4; ++quantity) each[quantity * kContacts + i] = of_contact[quantity];
+    const std::array<double, kContactOutputs.size()> of_contact{1e-3 * contacts_.gap[at], contacts_.pressure[at], contacts_.pushes(0, i),
+                                                                contacts_.pushes(1, i), touched_[at] ? kContactMode : 0.0};
+    for (std::size_t quantity = 0; quantity < of_contact.size(); ++quantity) each[static_cast<int>(quantity) * kContacts + i] = of_contact[quantity];
   }
 }
 

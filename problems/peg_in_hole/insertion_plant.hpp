@@ -93,7 +93,9 @@ class InsertionPlant : public Plant {
   bool success_ = false;
   long first_touch_ = -1;  // step
   double time_ = 0, first_touch_peak_ = 0, largest_force_ = 0, sustained_force_ = 0;
-  double tick_peak_ = 0;  // N: the largest force since the commands last changed
+  // since the commands last changed: the largest force (N), and who touched
+  double tick_peak_ = 0;
+  std::array<bool, kContacts> touched_{};
   double window_sum_ = 0, millisecond_sum_ = 0;
   std::vector<double> window_;
 };

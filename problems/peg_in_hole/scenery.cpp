@@ -34,7 +34,8 @@ std::vector<SceneryArrow> pushes(const Geometry& g) {
         lower{.body = "hole", .at = {side * opening * kMetre, -g.chamfer * kMetre, 0}},
         upper{.body = "hole", .at = {side * (opening + g.chamfer) * kMetre, 0, 0}};
     const std::string name = kContactNames[i];
-    arrows.push_back({.name = name, .at = i < 2 ? corner : i < 4 ? lower : upper, .vector = {"push_x_" + name, "push_z_" + name, 0}, .frame = "world"});
+    arrows.push_back({.name = name, .at = i < 2 ? corner : i < 4 ? lower : upper, .vector = {"push_x_" + name, "push_z_" + name, 0},
+                      .frame = "world"});
   }
   return arrows;
 }
@@ -61,7 +62,8 @@ Scenery scenery_of(const AssemblyProblem& problem, bool height_is_known) {
   hole.shapes = {block(g, -1), block(g, 1)};
   SceneryBody peg{.name = "peg", .position = {"x", "z", 0}, .angle = SceneryValue("theta"), .trail = true};
   peg.shapes = {SceneryShape::box({g.width * kMetre, kPegLength * kMetre, 0}).at({0, kPegLength * kMetre / 2, 0})};
-  SceneryBody believed{.name = "believed hole", .position = {"estimate_hole_x", "estimate_hole_z", 0}, .angle = SceneryValue("estimate_hole_theta"), .outline = true};
+  SceneryBody believed{.name = "believed hole", .position = {"estimate_hole_x", "estimate_hole_z", 0},
+                       .angle = SceneryValue("estimate_hole_theta"), .outline = true};
   believed.shapes = hole.shapes;
   scenery.bodies = {hole, peg, believed};
   scenery.extent = 0.05;
@@ -73,15 +75,18 @@ Scenery scenery_of(const AssemblyProblem& problem, bool height_is_known) {
     scenery.ellipses.push_back({"believed hole", Eigen::Vector2d(side * g.half_opening(), -g.chamfer) * kMetre, spread});
   scenery.lenses = lenses(g);
 
-  scenery.estimates = {{"Hole, across and tilted", axis("x", "m"), axis("theta", "rad"), {covariance("x", "x"), covariance("x", "theta"), covariance("theta", "theta")}}};
+  scenery.estimates = {{"Hole, across and tilted", axis("x", "m"), axis("theta", "rad"),
+                        {covariance("x", "x"), covariance("x", "theta"), covariance("theta", "theta")}}};
   scenery.plots = {truth_and_estimate("Hole across: truth, estimate and 2 standard deviations", "m", "x"),
                    truth_and_estimate("Hole's tilt: truth, estimate and 2 standard deviations", "rad", "theta")};
   if (!height_is_known) {
-    scenery.estimates.push_back({"Hole, across and in height", axis("x", "m"), axis("z", "m"), {covariance("x", "x"), covariance("x", "z"), covariance("z", "z")}});
+    scenery.estimates.push_back({"Hole, across and in height", axis("x", "m"), axis("z", "m"),
+                                 {covariance("x", "x"), covariance("x", "z"), covariance("z", "z")}});
     scenery.plots.push_back(truth_and_estimate("Hole's height: truth, estimate and 2 standard deviations", "m", "z"));
   }
   scenery.plots.push_back({.title = "Depth", .unit = "m", .columns = {"depth"}});
-  scenery.plots.push_back({.title = "Contact force on the peg, and its peak since the tick before", .unit = "N", .columns = {"Fx", "Fz", "peak_force"}});
+  scenery.plots.push_back({.title = "Contact force on the peg, and its peak since the tick before", .unit = "N",
+                           .columns = {"Fx", "Fz", "peak_force"}});
   const auto motion = [&](const std::string& title, const std::string& unit, const std::string& axis) {
     scenery.plots.push_back({.title = title, .unit = unit, .columns = {axis, "reference_" + axis},
                              .foresights = {{"plan_" + axis + "#", problem.intervals, problem.interval}}});

@@ -288,7 +288,8 @@ export class Animation {
     const line = (role, text) => element("span", {class: "key"}, element("i", {class: "arrow-key", style: `background: var(--scene-${role})`}), text);
     const believed = this.planar && (this.scenery.bodies ?? []).some((body) => body.outline);
     return [
-      ...Object.entries(this.largest).filter(([, value]) => value > 0).map(([kind, value]) => line(kind, `longest ${kind} ${scaled(value, kUnits[kind] ?? "", 3)}`)),
+      ...Object.entries(this.largest).filter(([, value]) => value > 0)
+          .map(([kind, value]) => line(kind, `longest ${kind} ${scaled(value, kUnits[kind] ?? "", 3)}`)),
       ...(this.ghosts.length > 0 ? [line("plan", "planned")] : []),
       ...(believed ? [line("believed", this.ellipses.length > 0 ? "believed, with 1 and 2 standard deviations" : "believed")] : []),
     ];

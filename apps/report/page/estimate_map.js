@@ -33,20 +33,23 @@ export class EstimateMap {
     const at = (name) => (name === undefined ? undefined : bind(name, table)), rows = table.kept;
     const covariance = json.covariance.map(at);
     this.covariance = (k) => covariance.map((value) => value(k));
-    const axis = ({title, unit, mean, truth}, variance) => ({title, unit, mean: at(mean), truth: at(truth), deviation: (k) => Math.sqrt(Math.max(0, variance(k)))});
+    const axis = ({title, unit, mean, truth}, variance) =>
+        ({title, unit, mean: at(mean), truth: at(truth), deviation: (k) => Math.sqrt(Math.max(0, variance(k)))});
     this.axes = [axis(json.across, covariance[0]), axis(json.upward, covariance[2])];
     this.views = [["whole run", 0], ["second half", rows >> 1]].map(([title, first]) => {
       const ranges = this.axes.map((one) => rangeFrom(first, one, rows));
       const scales = this.axes.map(({unit}, i) => prefixed(unit, Math.max(Math.abs(ranges[i].low), Math.abs(ranges[i].high))));
-      const canvas = element("canvas", {role: "img", style: `height: ${kHeight}px`, "aria-label": `${json.title}, ${title}: mean, ellipses of one and two standard deviations, truth`});
+      const label = `${json.title}, ${title}: mean, ellipses of one and two standard deviations, truth`;
+      const canvas = element("canvas", {role: "img", style: `height: ${kHeight}px`, "aria-label": label});
       return {title, ranges, scales, canvas};
     });
     this.note = element("span", {class: "note"});
     const key = (style, text) => element("span", {class: "key"}, element("i", {class: style}), text);
-    this.node = element("figure", {class: "plot estimate", role: "group", "aria-label": json.title}, element("figcaption", {}, json.title, this.note),
-                        element("div", {class: "views"}, ...this.views.map(({title, canvas}) => element("div", {}, element("p", {class: "view"}, title), canvas))),
-                        element("p", {class: "keys"}, key("mean-key", "believed: mean, 1 and 2 standard deviations (of normal errors, 39 % and 86 % lie within)"),
-                                ...(this.axes[0].truth ? [key("truth-key", "truth")] : [])));
+    const views = this.views.map(({title, canvas}) => element("div", {}, element("p", {class: "view"}, title), canvas));
+    const believed = key("mean-key", "believed: mean, 1 and 2 standard deviations (of normal errors, 39 % and 86 % lie within)");
+    this.node = element("figure", {class: "plot estimate", role: "group", "aria-label": json.title},
+                        element("figcaption", {}, json.title, this.note), element("div", {class: "views"}, ...views),
+                        element("p", {class: "keys"}, believed, ...(this.axes[0].truth ? [key("truth-key", "truth")] : [])));
     whenSeen(this.node, () => {
       for (const view of this.views) new ResizeObserver(() => this.draw(view)).observe(view.canvas);
       clock.listen(() => this.show());
@@ -75,21 +78,23 @@ export class EstimateMap {
   }
 
   draw({canvas, ranges: [x, y], scales}) {
-    const ratio = window.devicePixelRatio, width = canvas.clientWidth, inner = {width: width - kMargin.left - kMargin.right, height: kHeight - kMargin.top - kMargin.bottom};
+    const ratio = window.devicePixelRatio, width = canvas.clientWidth;
+    const inner = {width: width - kMargin.left - kMargin.right, height: kHeight - kMargin.top - kMargin.bottom};
     if (width === 0) return;
     canvas.width = width * ratio;
     canvas.height = kHeight * ratio;
     const context = canvas.getContext("2d");
     context.scale(ratio, ratio);
-    const toX = (v) => kMargin.left + ((v - x.low) / (x.high - x.low)) * inner.width, toY = (v) => kMargin.top + ((y.high - v) / (y.high - y.low)) * inner.height;
-    this.drawAxes(context, width, inner, {x, y, toX, toY, scales});
+    const toX = (v) => kMargin.left + ((v - x.low) / (x.high - x.low)) * inner.width;
+    const toY = (v) => kMargin.top + ((y.high - v) / (y.high - y.low)) * inner.height;
+    this.drawAxes(context, inner, {x, y, toX, toY, scales});
     context.beginPath();
     context.rect(kMargin.left, kMargin.top, inner.width, inner.height);
     context.clip();
     this.drawBelief(context, toX, toY);
   }
 
-  drawAxes(context, width, inner, {x, y, toX, toY, scales}) {
+  drawAxes(context, inner, {x, y, toX, toY, scales}) {
     context.strokeStyle = color("grid");
     context.fillStyle = color("muted");
     context.font = "11px system-ui, sans-serif";

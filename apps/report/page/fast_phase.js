@@ -22,7 +22,8 @@ function phasesOf(table) {
 }
 
 function picture(table, rows, name, k, unitOfTime) {
-  const frame = element("div", {class: "frame", style: "min-height: 120px"}), {unit, factor} = prefixed(unitOf(name), largestOf([table.numbers(name)]));
+  const frame = element("div", {class: "frame", style: "min-height: 120px"});
+  const {unit, factor} = prefixed(unitOf(name), largestOf([table.numbers(name)]));
   whenSeen(frame, () => {
     const values = table.numbers(name), tau = table.numbers("tau");
     const plot = new uPlot({
@@ -32,7 +33,8 @@ function picture(table, rows, name, k, unitOfTime) {
     }, [rows.map((k) => tau[k] / unitOfTime), rows.map((k) => values[k])], frame);
     onThemeChange(() => plot.redraw(false));
   });
-  return element("figure", {class: "plot", "aria-label": `${name} over the collision's own time`}, element("figcaption", {}, name.replaceAll("_", " "), unit ? element("span", {class: "unit"}, shownUnit(unit)) : undefined), frame);
+  const caption = element("figcaption", {}, name.replaceAll("_", " "), unit ? element("span", {class: "unit"}, shownUnit(unit)) : undefined);
+  return element("figure", {class: "plot", "aria-label": `${name} over the collision's own time`}, caption, frame);
 }
 
 export function fastPhases(table) {

@@ -52,7 +52,8 @@ export function plotGroups(table, timeName, scenery) {
     const columns = plot.columns.filter((name) => table.has(name));
     columns.forEach((name) => taken.add(name));
     const {title, unit = "", limits, bands, foresights} = plot;
-    if (columns.length > 0) groups.set("asked" + i, {title, unit, columns, limits, bands, foresights, rank: 1 + i / 100});
+    const folded = columns.every((name) => table.columns.get(name).constant !== undefined);  // nothing to be seen
+    if (columns.length > 0) groups.set("asked" + i, {title, unit, columns, limits, bands, foresights, rank: 1 + i / 100, folded});
   });
   const folded = groups.size > 0;  // who asks for plots has said what is to be seen first
   for (const name of table.names) {

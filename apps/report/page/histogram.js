@@ -1,12 +1,12 @@
-// A histogram on a canvas: equal bins by the rule of Freedman and Diaconis, width = 2 IQR / cbrt(n), at most 60 of them; whole numbers where
-// the values are such.
+// A histogram on a canvas: equal bins by the rule of Freedman and Diaconis, width = 2 IQR / cbrt(n), 20 to 60 of them where there are enough values;
+// whole numbers where the values are such.
 import {element} from "./element.js";
-import {number, prefixed} from "./format.js";
+import {number, prefixed, withUnit} from "./format.js";
 import {percentile, sorted} from "./statistics.js";
 import {color, onThemeChange, seriesColor} from "./theme.js";
 import {largestOf} from "./units.js";
 
-const kMostBins = 60, kHeight = 120;
+const kMostBins = 60, kEnoughBins = 20, kHeight = 120;
 
 /// {low, high, count} of the bins that hold all values of a sorted sample.
 export function bins(sample) {
@@ -16,7 +16,9 @@ export function bins(sample) {
     const step = Math.max(1, Math.floor(width)), count = Math.ceil((high - low + 1) / step);
     return {low: low - 0.5, high: low - 0.5 + count * step, count};
   }
-  return {low, high, count: Math.min(kMostBins, Math.max(5, width > 0 ? Math.ceil((high - low) / width) : 10))};
+  // The rule is for one hump; two far apart make its bins too wide.
+  const least = Math.min(kEnoughBins, Math.ceil(Math.sqrt(sample.length)));
+  return {low, high, count: Math.min(kMostBins, Math.max(least, width > 0 ? Math.ceil((high - low) / width) : 0))};
 }
 
 function countsOf(values, {low, high, count}) {
@@ -29,8 +31,9 @@ function countsOf(values, {low, high, count}) {
 /// colour, each further set as a line in its own.
 export function histogram(name, unit, sets) {
   const samples = sets.map(({values}) => sorted(values)), all = sorted(samples.flatMap((sample) => [...sample])), grid = bins(all);
-  const counts = samples.map((sample) => countsOf(sample, grid)), failures = countsOf(sorted(sets[0].failed), grid), most = Math.max(...counts.flat());
-  const scale = prefixed(unit, largestOf([all])), text = (v) => number(v * scale.factor, 3), inUnit = (v) => text(v) + (scale.unit ? "\u202f" + scale.unit : "");
+  const counts = samples.map((sample) => countsOf(sample, grid)), failures = countsOf(sorted(sets[0].failed), grid);
+  const most = Math.max(...counts.flat());
+  const scale = prefixed(unit, largestOf([all])), text = (v) => number(v * scale.factor, 3), inUnit = (v) => withUnit(v * scale.factor, scale.unit, 3);
   const note = `median ${text(percentile(samples[0], 0.5))}, 95 % below ${inUnit(percentile(samples[0], 0.95))}`;
   const canvas = element("canvas", {class: "histogram", role: "img", style: `height: ${kHeight}px`,
                                     "aria-label": `Histogram of ${name}: ${inUnit(all[0])} to ${inUnit(all[all.length - 1])}; ${sets[0].name}: ${note}`});

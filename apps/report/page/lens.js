@@ -32,7 +32,8 @@ export class Lens {
   /// Where it stands in a picture of this size, in pixels from its upper left corner.
   resize(width, height) {
     const size = Math.round(kShare * Math.min(width, 1.25 * height));
-    this.box = {left: this.corner.includes("left") ? kInset : width - size - kInset, top: this.corner.includes("top") ? kInset : height - size - kInset, size};
+    this.box = {left: this.corner.includes("left") ? kInset : width - size - kInset,
+                top: this.corner.includes("top") ? kInset : height - size - kInset, size};
     Object.assign(this.frame.style, {left: `${this.box.left}px`, top: `${this.box.top}px`, width: `${size}px`, height: `${size}px`});
   }
 

@@ -11,6 +11,7 @@ import {largestOf, shownUnit} from "./units.js";
 
 const kHeight = 158;
 const kRounding = 1e-10;  // values that differ by less are drawn as one
+const kBesideMost = 8;   // letters of a lane's name that have room beside it
 const kLegendMost = 12;  // beyond, a legend says less than the picture
 
 /// Of the quantities that are no part of the scene, positive values over more than four decades are read on a logarithmic axis.
@@ -74,7 +75,8 @@ export class Plots {
   addFold(groups) {
     if (groups.length === 0) return;
     const names = groups.flatMap((group) => group.columns);
-    this.node.append(element("details", {class: "plots"}, element("summary", {}, `More curves (${names.length})`), ...groups.map((group) => this.placeFor(group))));
+    const summary = element("summary", {}, `More curves (${names.length})`);
+    this.node.append(element("details", {class: "plots"}, summary, ...groups.map((group) => this.placeFor(group))));
   }
 
   /// Where a plot will be, once it is seen.
@@ -82,7 +84,8 @@ export class Plots {
     const isModes = group.rank === 0;
     const lanes = this.lanes.filter((lane) => group.columns.includes(lane.column));
     const height = isModes ? laneHeight(lanes) + 36 : kHeight;
-    const arrays = isModes ? [] : group.columns.map((name) => this.table.numbers(name)), logarithmic = group.rank >= kOther && isWide(arrays);
+    const arrays = isModes ? [] : group.columns.map((name) => this.table.numbers(name));
+    const logarithmic = group.rank >= kOther && isWide(arrays);
     const scale = prefixed(group.unit, logarithmic ? 1 : largestOf(arrays));
     const unit = scale.unit ? element("span", {class: "unit"}, shownUnit(scale.unit)) : undefined;
     const frame = element("div", {class: "frame", style: `min-height: ${height}px`});
@@ -104,22 +107,23 @@ export class Plots {
         label: name, stroke: () => seriesColor(i), width: many ? 0.75 : 1.4, points: {show: false},
         value: (_, v) => number(v === null ? v : v * factor, 5),
       }))],
-      plugins: [bandPlugin(this.lanes, this.time), confidencePlugin(group.bands, this.table, this.time, (name) => seriesColor(group.columns.indexOf(name))),
+      plugins: [bandPlugin(group.bands ? [] : this.lanes, this.time),
+                confidencePlugin(group.bands, this.table, this.time, (name) => seriesColor(group.columns.indexOf(name))),
                 limitsPlugin(group.limits), foresightPlugin(group.foresights, this.table, this.time, this.clock), eventsPlugin(this.events)],
       // A logarithmic axis has no place for 0: the line has a gap there.
     }, logarithmic ? arrays.map((values) => Array.from(values, (v) => (v > 0 ? v : null))) : arrays);
   }
 
   makeLanes(group, frame, height, lanes) {
-    const names = lanes.map(({name}) => (name.length > 8 ? name.slice(0, 7) + "…" : name));
+    const names = lanes.map(({name}) => name.replaceAll("_", " ")), beside = names.every((name) => name.length <= kBesideMost);
     this.add(group, frame, {
       height,
       legend: {show: false},
       scales: {x: this.timeScale(), y: {range: [0, lanes.length]}},
-      axes: [axis({size: 26}), axis({size: kLabelSize, grid: {show: false}, ticks: {show: false}, values: () => names,
+      axes: [axis({size: 26}), axis({size: kLabelSize, grid: {show: false}, ticks: {show: false}, values: () => (beside ? names : names.map(() => "")),
                                      splits: () => names.map((_, i) => names.length - i - 0.5)})],
       series: [{}, {show: false}],
-      plugins: [lanesPlugin(lanes, this.time), eventsPlugin(this.events)],
+      plugins: [lanesPlugin(lanes, this.time, beside ? [] : names), eventsPlugin(this.events)],
     }, [new Float64Array(this.time.length)]);
   }
 

@@ -7,6 +7,7 @@ import {largestOf, unitOf} from "./units.js";
 
 const kMargin = {left: 62, right: 12, top: 8, bottom: 38};
 const kMostCells = 12, kInCell = 4;  // along each axis; runs that a cell has, about
+const kReach = 10;                // pixels from a dot, within which the pointer is at it
 
 function limits(values) {
   let low = Infinity, high = -Infinity;
@@ -16,8 +17,19 @@ function limits(values) {
   return [low - room, high + room];
 }
 
-export function makeSuccessMap(label) {
-  return element("canvas", {class: "success-map", role: "img", "aria-label": label});
+/// `onPoint(k)` is told which run the pointer is at, undefined where at none.
+export function makeSuccessMap(label, onPoint) {
+  const canvas = element("canvas", {class: "success-map", role: "img", "aria-label": label});
+  canvas.addEventListener("pointermove", ({offsetX, offsetY}) => {
+    let nearest, least = kReach;
+    canvas.places?.forEach(([x, y], k) => {
+      const distance = Math.hypot(x - offsetX, y - offsetY);
+      if (distance < least) [nearest, least] = [k, distance];
+    });
+    onPoint(nearest);
+  });
+  canvas.addEventListener("pointerleave", () => onPoint(undefined));
+  return canvas;
 }
 
 /// `across` and `upward` are {name, values}; success[k] > 0 where run k succeeded.
@@ -54,17 +66,19 @@ export function drawSuccessMap(canvas, across, upward, success) {
   }
   const many = x.length > 3000, radius = many ? 1.2 : 2.2;
   context.globalAlpha = many ? 0.5 : 0.8;
+  canvas.places = Array.from(x, (_, k) => [toX(shareX(x[k])), toY(shareY(y[k]))]);
   for (const wanted of [true, false]) {  // failures on top
     context.fillStyle = color(wanted ? "good" : "bad");
     for (let k = 0; k < x.length; ++k) {
       if (success[k] > 0 !== wanted || !Number.isFinite(x[k]) || !Number.isFinite(y[k])) continue;
       context.beginPath();
-      context.arc(toX(shareX(x[k])), toY(shareY(y[k])), wanted ? radius : 1.3 * radius, 0, 2 * Math.PI);
+      context.arc(...canvas.places[k], wanted ? radius : 1.3 * radius, 0, 2 * Math.PI);
       context.fill();
     }
   }
   context.globalAlpha = 1;
-  drawAxes(context, {width, height, inner, x: {...across, low: x0, high: x1, to: (v) => toX(shareX(v))}, y: {...upward, low: y0, high: y1, to: (v) => toY(shareY(v))}});
+  drawAxes(context, {height, inner, x: {...across, low: x0, high: x1, to: (v) => toX(shareX(v))},
+                     y: {...upward, low: y0, high: y1, to: (v) => toY(shareY(v))}});
 }
 
 function drawAxes(context, {height, inner, x, y}) {

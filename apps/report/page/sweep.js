@@ -22,12 +22,15 @@ export class Sweep {
     this.plots = [];
     this.title = "Sweep";
     const {names} = this.table, baselines = names.filter((name) => name.endsWith(".success")).map((name) => name.slice(0, -".success".length));
-    this.quantities = names.filter((name) => !name.includes(".") && !["success", "seed", "sample"].includes(name) && !this.table.isText(name));
+    const isQuantity = (name) => !name.includes(".") && !["success", "seed", "sample"].includes(name) && !this.table.isText(name);
+    this.quantities = names.filter(isQuantity);
     this.contestants = [kController, ...baselines].map((name) => this.figures(name));
-    const [mpc] = this.contestants, csv = element("button", {type: "button", "aria-label": "Download as CSV", onclick: () => download(part.name, this.table.csv())}, "CSV");
+    const [{successes, n, interval}] = this.contestants, save = () => download(part.name, this.table.csv());
+    const facts = `${successes} of ${n} succeeded: ${percent(successes / n)}, 95 % interval ${percent(interval[0])} to ${percent(interval[1])}`;
     this.node = element("section", {id: "part-" + index, "aria-label": this.title}, element("h2", {}, this.title),
-                        element("p", {class: "facts"}, `${mpc.successes} of ${mpc.n} succeeded: ${percent(mpc.successes / mpc.n)}, 95 % interval ${percent(mpc.interval[0])} to ${percent(mpc.interval[1])}`, csv),
-                        ...(baselines.length > 0 ? [this.comparison()] : []), ...this.maps(), ...this.histograms(), ...this.contestants.map((one) => this.failures(one)));
+                        element("p", {class: "facts"}, facts, element("button", {type: "button", "aria-label": "Download as CSV", onclick: save}, "CSV")),
+                        ...(baselines.length > 0 ? [this.comparison()] : []), ...this.maps(), ...this.histograms(),
+                        ...this.contestants.map((one) => this.failures(one)));
     onThemeChange(() => this.draw());
   }
 
@@ -46,7 +49,8 @@ export class Sweep {
   comparison() {
     const baseline = this.contestants[1].name;
     const outcomes = this.quantities.filter((name) => this.table.has(`${baseline}.${name}`) && !kOfTheSolver.includes(name));
-    const scales = new Map(outcomes.map((name) => [name, prefixed(unitOf(name), largestOf(this.contestants.map((one) => this.values(name, one.name))))]));
+    const all = (quantity) => this.contestants.map((one) => this.values(quantity, one.name));
+    const scales = new Map(outcomes.map((name) => [name, prefixed(unitOf(name), largestOf(all(name)))]));
     const lines = this.contestants.map(({name, successes, n, interval}) => {
       const line = {name, rate: `${successes} of ${n}`, interval: `${percent(interval[0])} to ${percent(interval[1])}`};
       for (const quantity of outcomes) {
@@ -56,25 +60,31 @@ export class Sweep {
       return line;
     });
     const heading = (name) => readable(name) + (scales.get(name).unit ? `, ${scales.get(name).unit}` : "");
-    return element("div", {}, dataTable([["name", "controller"], ["rate", "succeeded"], ["interval", "95 % interval"], ...outcomes.map((name) => [name, heading(name)])],
-                                        lines, {label: "Controllers in the same worlds"}),
+    const columns = [["name", "controller"], ["rate", "succeeded"], ["interval", "95 % interval"], ...outcomes.map((name) => [name, heading(name)])];
+    return element("div", {}, dataTable(columns, lines, {label: "Controllers in the same worlds"}),
                    element("p", {class: "keys"}, "In the same worlds; a / b: the median is a, 95 % lie at or below b."));
   }
 
   maps() {
-    const select = (label) => element("select", {"aria-label": label, onchange: () => this.draw()}, ...this.quantities.map((name) => element("option", {}, name)));
+    const options = () => this.quantities.map((name) => element("option", {}, name));
+    const select = (label) => element("select", {"aria-label": label, onchange: () => this.draw()}, ...options());
     this.across = select("Across");
     this.upward = select("Upward");
     this.upward.selectedIndex = Math.min(1, this.quantities.length - 1);
+    const seeds = this.table.numbers("seed");
     for (const one of this.contestants) {
-      one.canvas = makeSuccessMap(`Successes and failures of ${one.name} over two quantities; ${one.successes} of ${one.n} succeeded`);
+      const rate = `${one.successes} of ${one.n}`;
+      one.note = element("span", {class: "note"}, rate);
+      one.canvas = makeSuccessMap(`Successes and failures of ${one.name} over two quantities; ${rate} succeeded`, (k) => {
+        one.note.textContent = k === undefined || !seeds ? rate : `--seed ${seeds[k]}: ${one.success[k] > 0 ? "succeeded" : "failed"}`;
+      });
       whenSeen(one.canvas, () => new ResizeObserver(() => this.draw(one)).observe(one.canvas));
     }
     const key = (role, text) => element("span", {class: "key"}, element("i", {style: `background: var(--${role})`}), text);
     return [element("h3", {}, "Where"), element("p", {class: "facts"}, "across ", this.across, " upward ", this.upward),
-            element("div", {class: "maps"}, ...this.contestants.map(({name, successes, n, canvas}) =>
-                element("figure", {class: "plot"}, element("figcaption", {}, name, element("span", {class: "note"}, `${successes} of ${n}`)), canvas))),
-            element("p", {class: "keys"}, key("good", "succeeded"), key("bad", "failed"), "tint: rate of success in a cell")];
+            element("div", {class: "maps"}, ...this.contestants.map(({name, note, canvas}) =>
+                element("figure", {class: "plot"}, element("figcaption", {}, name, note), canvas))),
+            element("p", {class: "keys"}, key("good", "succeeded"), key("bad", "failed"), "tint: rate of success in a cell; a dot tells its seed to the pointer")];
   }
 
   draw(only) {
@@ -92,21 +102,28 @@ export class Sweep {
     const failed = (values, success) => Array.from(values).filter((v, k) => !(success[k] > 0));
     const one = (name) => {
       const own = this.contestants.filter((c, i) => i === 0 || (this.table.has(`${c.name}.${name}`) && !kOfTheSolver.includes(name)));
-      return histogram(name, unitOf(name), own.map((c) => ({name: c.name, values: this.values(name, c.name), failed: failed(this.values(name, c.name), c.success)})));
+      return histogram(name, unitOf(name), own.map((c) => {
+        const values = this.values(name, c.name);
+        return {name: c.name, values, failed: failed(values, c.success)};
+      }));
     };
-    const group = (title, list, ...more) => (list.length === 0 ? [] : [element("h3", {}, title), ...more, element("div", {class: "histograms"}, ...list.map(one))]);
-    const key = element("p", {class: "keys"}, ...this.contestants.map(({name}, i) =>
-        element("span", {class: "key"}, element("i", {class: i > 0 ? "arrow-key" : undefined, style: `background: var(--series-${i})`}), name)),
-        ...(this.contestants[0].successes < this.contestants[0].n ? [element("span", {class: "key"}, element("i", {style: "background: var(--bad)"}), `failed (${kController})`)] : []));
+    const group = (title, list, ...more) =>
+        (list.length === 0 ? [] : [element("h3", {}, title), ...more, element("div", {class: "histograms"}, ...list.map(one))]);
+    const sample = (shape, role, text) => element("span", {class: "key"}, element("i", {class: shape, style: `background: var(--${role})`}), text);
+    const [{successes, n}] = this.contestants, bad = successes < n ? [sample(undefined, "bad", `failed (${kController})`)] : [];
+    const key = element("p", {class: "keys"}, ...this.contestants.map(({name}, i) => sample(i > 0 ? "arrow-key" : undefined, `series-${i}`, name)), ...bad);
     return [...group("What came of it", spread.filter((name) => !isDrawn(name)), key), ...group("What was drawn", spread.filter(isDrawn))];
   }
 
   failures({name, success, successes, n}) {
     const {table} = this, rows = Array.from({length: table.kept}, (_, k) => k).filter((k) => !(success[k] > 0));
-    const columns = table.names.filter((column) => (name === kController ? !column.includes(".") : !table.has(`${name}.${column}`) && (!column.includes(".") || column.startsWith(name + "."))));
+    // A baseline's own columns in place of the controller's.
+    const columns = table.names.filter((column) => (column.includes(".") ? column.startsWith(name + ".") : !table.has(`${name}.${column}`)));
     const details = element("details", {}, element("summary", {}, `Failures of ${name} (${n - successes})`));
-    details.addEventListener("toggle", () => details.children.length === 1 && details.append(dataTable(columns.map((column) => [column, readable(column)]),
-        rows.map((k) => Object.fromEntries(columns.map((column) => [column, table.cell(column, k)]))), {label: `Failures of ${name}`})), {once: true});
+    details.addEventListener("toggle", () => {
+      const lines = rows.map((k) => Object.fromEntries(columns.map((column) => [column, table.cell(column, k)])));
+      if (details.children.length === 1) details.append(dataTable(columns.map((column) => [column, readable(column)]), lines, {label: `Failures of ${name}`}));
+    }, {once: true});
     return details;
   }
 }

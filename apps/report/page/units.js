@@ -1,7 +1,8 @@
 // The unit of a quantity that a record names without one, by the names that plants, estimators and verdicts use.
 
 const kUnits = [
-  [/^gap_acceleration/, "m/s^2"], [/^gap_rate/, "m/s"], [/^gap/, "m"], [/theta|angle|tilt/, "rad"], [/omega/, "rad/s"], [/speed|(^|_)v[xyz]?$/, "m/s"], [/force|touch_peak/, "N"], [/(^|_)(time|since)$/, "s"],
+  [/^gap_acceleration/, "m/s^2"], [/^gap_rate/, "m/s"], [/^gap/, "m"], [/theta|angle|tilt/, "rad"], [/omega/, "rad/s"],
+  [/speed|(^|_)v[xyz]?$/, "m/s"], [/force|touch_peak/, "N"], [/(^|_)(time|since)$/, "s"],
   [/(^|_)[xyz]$|depth|plane|rebound|offset|(^|_)tip$/, "m"],
 ];
 
