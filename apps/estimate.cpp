@@ -50,10 +50,27 @@ class Cells {
   Vector values_;
 };
 
-Vector deviations(const Estimator& estimator) {
+Eigen::MatrixXd covariance_of(const Estimator& estimator) {
   Eigen::MatrixXd covariance(estimator.num_estimates(), estimator.num_estimates());
   estimator.covariance(covariance);
-  return covariance.diagonal().cwiseSqrt();
+  return covariance;
+}
+
+Vector deviations(const Estimator& estimator) {
+  return covariance_of(estimator).diagonal().cwiseSqrt();
+}
+
+/// Of a scene's picture what an estimator alone can tell: no bodies, no truth.
+Scenery belief_scenery(const ControlTask& task) {
+  Scenery scenery;
+  scenery.title = task.name + ": what is estimated";
+  scenery.estimates = task.scenery.estimates;
+  for (SceneryEstimate& estimate : scenery.estimates) estimate.across.truth = estimate.upward.truth = "";
+  for (const SceneryPlot& plot : task.scenery.plots) {
+    for (const SceneryPlot::Band& band : plot.bands)
+      scenery.plots.push_back({.title = band.mean + " and 2 standard deviations", .unit = plot.unit, .columns = {band.mean}, .bands = {band}});
+  }
+  return scenery;
 }
 
 struct Belief {
@@ -106,6 +123,7 @@ int run_estimate(const Arguments& arguments) {
     std::vector<std::string> columns{"t"};
     for (const std::string& name : estimated) columns.push_back(name);
     for (const std::string& name : estimated) columns.push_back("sd_" + name);
+    for (const std::string& name : covariance_names(estimator)) columns.push_back(name);
     csv.emplace(output, columns);
   }
 
@@ -121,9 +139,14 @@ int run_estimate(const Arguments& arguments) {
     *csv << record["t"][k];
     for (const double value : mean) *csv << value;
     for (const double value : deviations(estimator)) *csv << value;
+    const Eigen::MatrixXd covariance = covariance_of(estimator);
+    for (Eigen::Index column = 0; column < covariance.cols(); ++column) {
+      for (Eigen::Index row = column; row < covariance.rows(); ++row) *csv << covariance(row, column);
+    }
     csv->end_row();
   }
   if (csv) csv->finish();
+  if (csv) write_scenery(belief_scenery(task), output);
   make_report(arguments, {output});
 
   estimator.mean(mean);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "tenon/core/eigen.hpp"
 
@@ -30,5 +31,15 @@ class Estimator {
 
   virtual std::string estimate_name(int i) const { return "estimate" + std::to_string(i + 1); }
 };
+
+/// Of the covariance's lower triangle in a record, column by column.
+inline std::vector<std::string> covariance_names(const Estimator& estimator) {
+  std::vector<std::string> names;
+  for (int column = 0; column < estimator.num_estimates(); ++column) {
+    for (int row = column; row < estimator.num_estimates(); ++row)
+      names.push_back("cov_" + estimator.estimate_name(column) + "_" + estimator.estimate_name(row));
+  }
+  return names;
+}
 
 }  // namespace tenon

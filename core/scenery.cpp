@@ -35,6 +35,8 @@ template <class List>
 std::string json_list(const List& list);
 std::string json_of(const Eigen::Vector3d& v) { return json_list(v); }
 std::string json_of(const Eigen::Vector2d& v) { return json_list(v); }
+std::string json_of(const SceneryPlot::Band& band);
+std::string json_of(const SceneryPlot::Foresight& foresight);
 
 template <class List>
 std::string json_list(const List& list) {
@@ -70,6 +72,7 @@ std::string json_of(const SceneryBody& body) {
   if (body.angle) object.set("axis", json_of(body.axis)).set("angle", body.angle->json());
   object.set("shapes", json_list(body.shapes));
   if (body.trail) object.set("trail", "true");
+  if (body.outline) object.set("outline", "true");
   return object.json();
 }
 
@@ -96,11 +99,61 @@ std::string json_of(const SceneryArrow& arrow) {
   return object.json();
 }
 
+std::string json_of(const SceneryGhosts& ghosts) {
+  Object object;
+  object.set("body", quoted(ghosts.body)).set("count", std::to_string(ghosts.count)).set("position", json_list(ghosts.position));
+  if (ghosts.angle) object.set("angle", ghosts.angle->json());
+  return object.json();
+}
+
+std::string json_of(const SceneryEllipse& ellipse) {
+  return Object().set("body", quoted(ellipse.body)).set("at", json_of(ellipse.at)).set("covariance", json_list(ellipse.covariance)).json();
+}
+
+std::string json_of(const SceneryLens& lens) {
+  return Object()
+      .set("name", quoted(lens.name))
+      .set("body", quoted(lens.body))
+      .set("at", json_of(lens.at))
+      .set("extent", json_of(lens.extent))
+      .json();
+}
+
+std::string json_of(const SceneryEstimate::Axis& axis) {
+  Object object;
+  object.set("title", quoted(axis.title)).set("unit", quoted(axis.unit)).set("mean", quoted(axis.mean));
+  if (!axis.truth.empty()) object.set("truth", quoted(axis.truth));
+  return object.json();
+}
+
+std::string json_of(const SceneryEstimate& estimate) {
+  return Object()
+      .set("title", quoted(estimate.title))
+      .set("across", json_of(estimate.across))
+      .set("upward", json_of(estimate.upward))
+      .set("covariance", json_list(estimate.covariance))
+      .json();
+}
+
+std::string json_of(const SceneryPlot::Band& band) {
+  return Object().set("mean", quoted(band.mean)).set("variance", quoted(band.variance)).json();
+}
+
+std::string json_of(const SceneryPlot::Foresight& foresight) {
+  return Object()
+      .set("columns", quoted(foresight.columns))
+      .set("count", std::to_string(foresight.count))
+      .set("step", json_of(foresight.step))
+      .json();
+}
+
 std::string json_of(const SceneryPlot& plot) {
   Object object;
   object.set("title", quoted(plot.title)).set("unit", quoted(plot.unit)).set("columns", json_list(plot.columns));
   const auto limit = [](const std::optional<double>& value) { return value ? json_of(*value) : std::string("null"); };
   if (plot.lower || plot.upper) object.set("limits", "[" + limit(plot.lower) + ", " + limit(plot.upper) + "]");
+  if (!plot.bands.empty()) object.set("bands", json_list(plot.bands));
+  if (!plot.foresights.empty()) object.set("foresights", json_list(plot.foresights));
   return object.json();
 }
 
@@ -164,11 +217,16 @@ std::string Scenery::json() const {
   if (up) text += ",\n  \"up\": " + json_of(*up);
   Object camera;
   if (camera_direction) camera.set("direction", json_of(*camera_direction));
+  if (camera_target) camera.set("target", json_of(*camera_target));
   if (!camera_follows.empty()) camera.set("follow", quoted(camera_follows));
   if (extent) camera.set("extent", json_of(*extent));
-  if (camera_direction || !camera_follows.empty() || extent) text += ",\n  \"camera\": " + camera.json();
-  text += ",\n  \"bodies\": " + json_lines(bodies) + ",\n  \"links\": " + json_lines(links) + ",\n  \"arrows\": " + json_lines(arrows) +
-          ",\n  \"plots\": " + json_lines(plots);
+  if (camera_direction || camera_target || !camera_follows.empty() || extent) text += ",\n  \"camera\": " + camera.json();
+  text += ",\n  \"bodies\": " + json_lines(bodies) + ",\n  \"links\": " + json_lines(links) + ",\n  \"arrows\": " + json_lines(arrows);
+  if (!ghosts.empty()) text += ",\n  \"ghosts\": " + json_lines(ghosts);
+  if (!ellipses.empty()) text += ",\n  \"ellipses\": " + json_lines(ellipses);
+  if (!lenses.empty()) text += ",\n  \"lenses\": " + json_lines(lenses);
+  if (!estimates.empty()) text += ",\n  \"estimates\": " + json_lines(estimates);
+  text += ",\n  \"plots\": " + json_lines(plots);
   return text + "\n}\n";
 }
 

@@ -70,7 +70,8 @@ struct SceneryBody {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
   std::optional<std::array<SceneryValue, 4>> quaternion = {};  // w, x, y, z, to the parent's axes; in place of the angle
   std::vector<SceneryShape> shapes = {};
-  bool trail = false;  // its path is drawn
+  bool trail = false;    // its path is drawn
+  bool outline = false;  // it is not there but believed to be: outlines alone, planar scenes
 };
 
 /// A point of a body, or of the world where no body is named.
@@ -95,12 +96,59 @@ struct SceneryArrow {
   std::vector<std::string> sum = {};  // names of earlier arrows: this one is their sum, `vector` is not read
 };
 
+/// Where a plan has a body at the ends of its intervals: its outlines, the fainter the farther ahead. A # in a column's name stands for
+/// 1 .. count. Planar scenes.
+struct SceneryGhosts {
+  std::string body = {};
+  int count = 0;
+  SceneryVector position = {};
+  std::optional<SceneryValue> angle = {};  // rad
+};
+
+/// How surely a point of a body is known, as ellipses of one and two standard deviations. Planar scenes.
+struct SceneryEllipse {
+  std::string body = {};
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();    // m
+  std::array<SceneryValue, 6> covariance = {};     // of the body's x, y (m) and angle (rad): the lower triangle, column by column
+};
+
+/// A square about a point of a body, seen enlarged. Planar scenes.
+struct SceneryLens {
+  std::string name = {};
+  std::string body = {};
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();  // m
+  double extent = 0;                             // m
+};
+
+/// Two quantities that are estimated together, drawn across one another: mean, ellipses of one and two standard deviations, truth.
+struct SceneryEstimate {
+  struct Axis {
+    std::string title = {}, unit = {};
+    std::string mean = {}, truth = {};  // columns; no truth where the record does not have it
+  };
+  std::string title = {};
+  Axis across = {}, upward = {};
+  std::array<std::string, 3> covariance = {};  // columns: across^2, across upward, upward^2
+};
+
 /// Columns that share a plot; what is not asked for is grouped by the columns' names.
 struct SceneryPlot {
+  /// Two standard deviations to either side of a mean.
+  struct Band {
+    std::string mean = {}, variance = {};  // columns
+  };
+  /// What a plan has ahead of the plot's time: columns with a # for 1 .. count, `step` (s) apart.
+  struct Foresight {
+    std::string columns = {};
+    int count = 0;
+    double step = 0;
+  };
   std::string title = {};
   std::string unit = {};
   std::vector<std::string> columns = {};
   std::optional<double> lower = {}, upper = {};  // limits, drawn as lines
+  std::vector<Band> bands = {};
+  std::vector<Foresight> foresights = {};
 };
 
 struct Scenery {
@@ -109,11 +157,16 @@ struct Scenery {
   Space space = Space::planar;
   std::optional<Eigen::Vector3d> up = {};                // else y in the plane, z in space
   std::optional<Eigen::Vector3d> camera_direction = {};  // from what is seen to the eye, spatial scenes
+  std::optional<Eigen::Vector3d> camera_target = {};     // what stands in the middle, else the middle of the whole run
   std::string camera_follows = {};                       // a body that stays in the middle
   std::optional<double> extent = {};                     // m: the size of what is seen, else that of the whole run
   std::vector<SceneryBody> bodies = {};
   std::vector<SceneryLink> links = {};
   std::vector<SceneryArrow> arrows = {};
+  std::vector<SceneryGhosts> ghosts = {};
+  std::vector<SceneryEllipse> ellipses = {};
+  std::vector<SceneryLens> lenses = {};
+  std::vector<SceneryEstimate> estimates = {};
   std::vector<SceneryPlot> plots = {};
 
   std::string json() const;

@@ -134,11 +134,9 @@ std::string RecedingHorizon::output_name(int i) const {
   const int estimates = static_cast<int>(estimates_.size());
   if (i < estimates) return estimator_->estimate_name(i);
   i -= estimates;
-  for (int column = 0; column < estimates; ++column) {
-    for (int row = column; row < estimates; ++row) {
-      if (i-- == 0) return "cov_" + estimator_->estimate_name(column) + "_" + estimator_->estimate_name(row);
-    }
-  }
+  const int covariances = estimates * (estimates + 1) / 2;
+  if (i < covariances) return covariance_names(*estimator_)[static_cast<std::size_t>(i)];
+  i -= covariances;
   return i < kLogSize ? kLogNames[i] : program_->plan_output_name(i - kLogSize);
 }
 

@@ -3,16 +3,12 @@
 
 #include <set>
 
-#include "tenon/apps/report/report.hpp"
 #include "tenon/core/csv.hpp"
-#include "tenon/tests/browser.hpp"
+#include "tenon/tests/report_page.hpp"
 #include "tenon/tests/sample_records.hpp"
 
 namespace tenon {
 namespace {
-
-constexpr const char* kReady = "document.documentElement?.dataset.ready === 'true'";
-constexpr const char* kAnimated = "window.report?.parts[0].animation?.camera";
 
 /// The picture of part 0 at the time that stands on its slider: {colours, sum}, read in the task that draws it.
 constexpr const char* kPicture = R"((() => {
@@ -27,43 +23,6 @@ constexpr const char* kPicture = R"((() => {
   pixels.forEach((pixel, i) => (sum = (sum + pixel * (i % 9973 + 1)) % 4294967291));
   return {colors: new Set(pixels).size, sum};
 })())";
-
-class ReportPage : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    if (!browser_path().empty()) browser_ = new Browser();
-  }
-  static void TearDownTestSuite() {
-    delete browser_;
-    browser_ = nullptr;
-  }
-  void SetUp() override {
-    if (browser_ == nullptr) GTEST_SKIP() << "there is no chromium (Debian's package chromium) to open the page with";
-  }
-
-  Browser& browser() { return *browser_; }
-
-  void open(const std::vector<std::string>& files, const std::string& hash = "", const char* condition = kReady, int width = 1280) {
-    const std::string page = folder_.path("page.html");
-    write_report(files, page);
-    browser().open(page + hash, condition, width);
-  }
-
-  void expect_silence() {
-    EXPECT_EQ(browser().complaints(), std::vector<std::string>());
-    for (std::size_t k = 1; k < browser().requests().size(); ++k) {
-      const std::string& address = browser().requests()[k];
-      EXPECT_TRUE(address.starts_with("data:") || address.starts_with("blob:")) << address;
-    }
-  }
-
-  ScratchFolder folder_;
-
- private:
-  static Browser* browser_;
-};
-
-Browser* ReportPage::browser_ = nullptr;
 
 TEST_F(ReportPage, EverySampleOpensWithoutAComplaintOrARequest) {
   for (const SampleRecord& record : {write_bouncing_ball(folder_), write_cradle(folder_), write_long_flight(folder_)}) {

@@ -104,6 +104,14 @@ TEST_F(Report, SaysWhatIsWrongWithAScenery) {
   EXPECT_NE(refusal_of_scenery(head + "\"bodies\": [{\"name\": \"a\", \"angle\": \"word\"}]}").find("names column 'word'"), std::string::npos);
   EXPECT_NE(refusal_of_scenery(head + "\"bodies\": [{\"name\": \"a\", \"parent\": \"b\"}]}").find("bodies[0].parent is 'b'"), std::string::npos);
   EXPECT_NE(refusal_of_scenery(head + "\"bodies\": [{\"name\": \"a\", \"shapes\": [{\"torus\": {}}]}]}").find("a shape of no known kind"), std::string::npos);
+  const std::string body = head + "\"bodies\": [{\"name\": \"a\"}], ";
+  EXPECT_EQ(refusal_of_scenery(body + "\"ghosts\": [{\"body\": \"a\", \"count\": 1, \"position\": [\"x#\"]}]}"), "none");
+  EXPECT_NE(refusal_of_scenery(body + "\"ghosts\": [{\"body\": \"a\", \"count\": 2, \"position\": [\"x#\"]}]}").find("ghosts[0].position names column 'x2'"), std::string::npos);
+  EXPECT_NE(refusal_of_scenery(body + "\"ghosts\": [{\"body\": \"a\", \"count\": 0}]}").find("ghosts[0].count is no count"), std::string::npos);
+  EXPECT_NE(refusal_of_scenery(body + "\"ellipses\": [{\"body\": \"a\", \"covariance\": [1, 0, 1]}]}").find("ellipses[0].covariance has 3 values"), std::string::npos);
+  EXPECT_NE(refusal_of_scenery(body + "\"lenses\": [{\"body\": \"b\", \"extent\": 1}]}").find("lenses[0].body is 'b'"), std::string::npos);
+  EXPECT_NE(refusal_of_scenery(body + "\"estimates\": [{\"across\": {\"mean\": \"x1\"}}]}").find("estimates[0].upward is no object"), std::string::npos);
+  EXPECT_NE(refusal_of_scenery(body + "\"plots\": [{\"columns\": [\"x1\"], \"bands\": [{\"mean\": \"x1\", \"variance\": \"xx\"}]}]}").find("plots[0].bands.variance names column 'xx'"), std::string::npos);
   EXPECT_NE(refusal_of_scenery(head + "\"arrows\": [{\"name\": \"f\", \"body\": \"a\"}]}").find("arrows[0].body is 'a'"), std::string::npos);
 }
 

@@ -36,3 +36,6 @@ picture car 1280x800 't=1.03&theme=dark' simulate car
 picture compare 1280x800 'theme=light' compare "${classic[@]}"
 picture convergence 1280x800 'theme=light' solve hs106
 picture envelope 1280x560 'theme=light' envelope momav
+picture peg_in_hole 1280x900 't=0.26&theme=light' mpc peg-in-hole-delta --seed 2
+picture soft_walls 1280x900 't=0.2&theme=dark' mpc cart-pole-soft-walls
+picture sweep 1280x1000 'theme=light' sweep peg-in-hole-tight --samples 200 --baselines

@@ -16,6 +16,8 @@ namespace {
 
 const std::vector<std::string> kShapes{"disc", "sphere", "box", "polygon", "capsule", "cylinder", "line", "half-space"};
 
+constexpr int kMostNumbered = 1000;  // columns that one name with a # may stand for
+
 /// What stands under a key, null where nothing does.
 Json member(const Json& object, const std::string& key) {
   return object.has(key) ? object.at(key) : Json::parse("null", "");
@@ -36,9 +38,26 @@ class Check {
       point(at + ".to", member(json, "to"));
     });
     each(root, "arrows", [this](const std::string& at, const Json& json) { arrow(at, json); });
-    each(root, "plots", [this](const std::string& at, const Json& json) {
-      for (const Json& column : member(json, "columns").elements()) value(at + ".columns", column);
+    each(root, "ghosts", [this](const std::string& at, const Json& json) { ghosts(at, json); });
+    each(root, "ellipses", [this](const std::string& at, const Json& json) {
+      one_of(at + ".body", member(json, "body"), bodies_);
+      values(at + ".covariance", member(json, "covariance"), 6);
     });
+    each(root, "lenses", [this](const std::string& at, const Json& json) {
+      one_of(at + ".body", member(json, "body"), bodies_);
+      const Json extent = member(json, "extent");
+      if (!extent.is_number() || !(extent.number() > 0)) fail(at + ".extent is no length", "a number of metres");
+    });
+    each(root, "estimates", [this](const std::string& at, const Json& json) {
+      for (const char* axis : {"across", "upward"}) {
+        const Json quantity = member(json, axis);
+        if (!quantity.is_object()) fail(at + "." + axis + " is no object", "{\"mean\": column, ...}");
+        value(at + "." + axis + ".mean", member(quantity, "mean"));
+        if (quantity.has("truth")) value(at + "." + axis + ".truth", quantity.at("truth"));
+      }
+      values(at + ".covariance", member(json, "covariance"), 3);
+    });
+    each(root, "plots", [this](const std::string& at, const Json& json) { plot(at, json); });
     if (const Json camera = member(root, "camera"); camera.has("follow")) one_of("camera.follow", camera.at("follow"), bodies_);
   }
 
@@ -67,6 +86,43 @@ class Check {
     if (json.has("frame") && !(json.at("frame").is_text() && json.at("frame").as_text() == "world")) one_of(at + ".frame", json.at("frame"), bodies_);
     for (const Json& part : member(json, "sum").elements()) one_of(at + ".sum", part, arrows_);
     arrows_.push_back(name(at, json));
+  }
+
+  void ghosts(const std::string& at, const Json& json) {
+    one_of(at + ".body", member(json, "body"), bodies_);
+    const int number = count(at + ".count", member(json, "count"));
+    for (const Json& element : member(json, "position").elements()) numbered(at + ".position", element, number);
+    if (json.has("angle")) numbered(at + ".angle", json.at("angle"), number);
+  }
+
+  void plot(const std::string& at, const Json& json) {
+    for (const Json& column : member(json, "columns").elements()) value(at + ".columns", column);
+    for (const Json& band : member(json, "bands").elements()) {
+      for (const char* part : {"mean", "variance"}) value(at + ".bands." + part, member(band, part));
+    }
+    for (const Json& foresight : member(json, "foresights").elements())
+      numbered(at + ".foresights", member(foresight, "columns"), count(at + ".foresights.count", member(foresight, "count")));
+  }
+
+  int count(const std::string& at, const Json& json) {
+    if (!json.is_number() || !(json.number() >= 1 && json.number() <= kMostNumbered))
+      fail(at + " is no count", fmt::format("1 to {}", kMostNumbered));
+    return static_cast<int>(json.number());
+  }
+
+  /// A value in whose column's name a # stands for 1 .. count.
+  void numbered(const std::string& at, const Json& json, int count) {
+    if (!json.is_text()) return value(at, json);
+    const std::string name = json.as_text();
+    const std::size_t place = name.find('#');
+    for (int i = 1; i <= count; ++i)
+      value(at, Json(place == std::string::npos ? name : std::string(name).replace(place, 1, std::to_string(i))));
+  }
+
+  void values(const std::string& at, const Json& json, std::size_t expected) {
+    const std::vector<Json> list = json.elements();
+    if (list.size() != expected) fail(fmt::format("{} has {} values", at, list.size()), fmt::format("{}: a lower triangle, column by column", expected));
+    for (const Json& element : list) value(at, element);
   }
 
   void point(const std::string& at, const Json& json) {

@@ -126,10 +126,12 @@ Scenery scene_scenery(const Scene& scene) {
     SceneryBody reference{.name = "reference", .position = {"rx", "ry", "rz"}};
     reference.shapes = {SceneryShape::sphere(0.6 * thick).colored("force")};
     scenery.bodies.push_back(reference);
+    for (const std::string axis : {"x", "y", "z"})
+      scenery.plots.push_back({.title = "Wrist along " + axis + ": wanted and actual", .unit = "m", .columns = {"r" + axis, "z" + axis}});
+    scenery.plots.push_back({.title = "Distance from the reference", .unit = "m", .columns = {"tracking_error"}});
     SceneryPlot torques{.title = "Motor torques", .unit = "N m", .columns = {"tau1", "tau2", "tau3"}};
     if (std::isfinite(robot.torque_limit)) torques.lower = -robot.torque_limit, torques.upper = robot.torque_limit;
     scenery.plots.push_back(torques);
-    scenery.plots.push_back({.title = "Distance from the reference", .unit = "m", .columns = {"tracking_error"}});
   }
   scenery.plots.push_back({.title = "Distance from singularities (0 is at one)", .columns = {"type_1", "det_a"}});
   return scenery;

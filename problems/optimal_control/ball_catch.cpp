@@ -68,7 +68,7 @@ Scenery draw() {
   out.bodies.push_back({.name = "ball", .position = {"x1", "y1", 0}, .shapes = {SceneryShape::disc(kRadius)}, .trail = true});
   out.arrows.push_back(
       {.name = "cup's force", .at = {.body = "ball", .at = {}}, .vector = {"lambda_cup_x", "lambda_cup_y", 0}, .frame = "world"});
-  out.plots.push_back({.title = "cup's acceleration", .unit = "m/s^2", .columns = {"cup_ax", "cup_ay"}});
+  out.plots.push_back({.title = "Cup's acceleration", .unit = "m/s^2", .columns = {"cup_ax", "cup_ay"}});
   return out;
 }
 

@@ -55,7 +55,7 @@ Scenery draw(const Pole& pole) {
                                    SceneryShape::disc(0.3 * size).at({0, -pole.orientation * length, 0})},
                         .trail = true});
   out.arrows.push_back({.name = "force", .at = {.body = "cart", .at = {}}, .vector = {"force", 0, 0}, .frame = "world"});
-  out.plots.push_back({.title = "force", .unit = "N", .columns = {"force"}});
+  out.plots.push_back({.title = "Force", .unit = "N", .columns = {"force"}});
   return out;
 }
 

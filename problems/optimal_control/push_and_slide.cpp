@@ -85,7 +85,7 @@ Scenery draw() {
       {.name = "finger", .position = {"x1", 0, 0}, .shapes = {SceneryShape::capsule({-1.5 * kSize, 0, 0}, {-kSize / 6, 0, 0}, kSize / 6)}});
   out.bodies.push_back({.name = "block", .position = {"x2", 0, 0}, .shapes = {SceneryShape::box({kSize, kSize, 0}).at({kSize / 2, 0, 0})}});
   out.arrows.push_back({.name = "contact", .at = {.body = "block", .at = {}}, .vector = {"lambda_finger", 0, 0}, .frame = "world"});
-  out.plots.push_back({.title = "forces", .unit = "N", .columns = {"force", "lambda_finger"}});
+  out.plots.push_back({.title = "Forces", .unit = "N", .columns = {"force", "lambda_finger"}});
   return out;
 }
 

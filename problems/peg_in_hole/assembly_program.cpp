@@ -74,6 +74,18 @@ void AssemblyProgram::commands(const Point& plan, double elapsed, VectorRef comm
   commands.segment<3>(kStiffness) = stiffness_to_si(problem_.impedance.stiffness, lever);
 }
 
+std::string AssemblyProgram::plan_output_name(int i) const {
+  constexpr std::array<const char*, 3> kNames{"plan_x", "plan_z", "plan_theta"};
+  return kNames[static_cast<std::size_t>(i / problem_.intervals)] + std::to_string(i % problem_.intervals + 1);
+}
+
+void AssemblyProgram::plan_outputs(const Point& plan, VectorRef values) const {
+  for (int k = 0; k < problem_.intervals; ++k) {
+    const Vector3d pose = to_si(plan.x.segment<3>(kStage * (k + 1) + kPose), problem_.geometry.lever);
+    for (int axis = 0; axis < 3; ++axis) values[axis * problem_.intervals + k] = pose[axis];
+  }
+}
+
 Stages AssemblyProgram::stages() const {
   Stages stages;
   for (int k = 0; k < problem_.intervals; ++k) {

@@ -50,6 +50,10 @@ class AssemblyProgram final : public HorizonProgram {
   bool wants_fresh_start() const override { return is_jammed_; }
   void commands(const Point& plan, double elapsed, VectorRef commands) const override;
   std::string command_name(int i) const override;
+  /// Where the peg is at the end of each interval: x, z (m), theta (rad).
+  int num_plan_outputs() const override { return 3 * problem_.intervals; }
+  std::string plan_output_name(int i) const override;
+  void plan_outputs(const Point& plan, VectorRef values) const override;
 
   int num_variables() const override { return kStage * problem_.intervals + kStates; }
   int num_constraints() const override { return kRows * problem_.intervals; }

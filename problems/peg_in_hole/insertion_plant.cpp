@@ -12,8 +12,10 @@ constexpr std::size_t kSustained = 100;  // ms, over which a sustained force is 
 
 constexpr std::array<const char*, 9> kVerdictNames{"hole_x",           "hole_z",          "hole_theta",    "success", "time",
                                                    "first_touch_peak", "sustained_force", "largest_force", "depth"};
-constexpr std::array<const char*, 13> kOutputNames{"x",      "z",          "theta", "vx", "vz", "omega", "hole_x",
-                                                   "hole_z", "hole_theta", "Fx",    "Fz", "My", "depth"};
+constexpr std::array<const char*, 14> kOutputNames{"x",          "z",  "theta", "vx", "vz",    "omega",     "hole_x", "hole_z",
+                                                   "hole_theta", "Fx", "Fz",    "My", "depth", "peak_force"};
+constexpr std::array<const char*, 5> kContactOutputs{"gap_", "lambda_", "push_x_", "push_z_", "mode_"};
+constexpr int kContactMode = 2;  // 0: free
 
 }  // namespace
 
@@ -55,7 +57,8 @@ void InsertionPlant::reset(std::uint64_t seed) {
   contacts_ = {};
   success_ = false;
   first_touch_ = -1;
-  time_ = first_touch_peak_ = largest_force_ = sustained_force_ = window_sum_ = millisecond_sum_ = 0;
+  touched_ = {};
+  time_ = first_touch_peak_ = tick_peak_ = largest_force_ = sustained_force_ = window_sum_ = millisecond_sum_ = 0;
   std::ranges::fill(window_, 0.0);
 }
 
@@ -68,6 +71,8 @@ void InsertionPlant::act(ConstVectorRef commands) {
 
 void InsertionPlant::advance(double t_end, ConstVectorRef commands) {
   pending_.push_back({steps_ + std::lround(world_.delay / kStep), commands});
+  tick_peak_ = 0;
+  touched_ = {};
   const long end = std::lround(t_end / kStep);
   while (steps_ < end && !finished()) {
     for (; !pending_.empty() && pending_.front().step <= steps_; pending_.pop_front()) act(pending_.front().commands);
@@ -88,7 +93,9 @@ InsertionPlant::Contacts InsertionPlant::contacts(const Vector3d& pose, const Ve
     const double f = std::max(0.0, -world_.contact_stiffness * gap.value - damping_ * gap.normal.dot(rate));
     const double slip = gap.tangent.dot(rate);
     out.pressure[at] = f;
-    out.force += f * (gap.normal - world_.friction * slip / std::hypot(slip, world_.friction_speed) * gap.tangent);
+    const Vector3d push = f * (gap.normal - world_.friction * slip / std::hypot(slip, world_.friction_speed) * gap.tangent);
+    out.pushes.col(static_cast<int>(at)) = push.head<2>();
+    out.force += push;
   }
   return out;
 }
@@ -105,6 +112,8 @@ void InsertionPlant::judge() {
   const double force = contacts_.force.head<2>().norm();
   if (force > 0 && first_touch_ < 0) first_touch_ = steps_;
   largest_force_ = std::max(largest_force_, force);
+  tick_peak_ = std::max(tick_peak_, force);
+  for (std::size_t i = 0; i < kContacts; ++i) touched_[i] = touched_[i] || contacts_.pressure[i] > 0;
   if (first_touch_ >= 0 && kStep * static_cast<double>(steps_ - first_touch_) <= kFirstTouch)
     first_touch_peak_ = std::max(first_touch_peak_, force);
 
@@ -121,14 +130,14 @@ void InsertionPlant::judge() {
 }
 
 int InsertionPlant::num_outputs() const {
-  return static_cast<int>(kOutputNames.size()) + 2 * kContacts;
+  return static_cast<int>(kOutputNames.size() + kContactOutputs.size() * kContacts);
 }
 
 std::string InsertionPlant::output_name(int i) const {
   const auto at = static_cast<std::size_t>(i);
   if (at < kOutputNames.size()) return kOutputNames[at];
-  const std::size_t contact = at - kOutputNames.size();
-  return contact < kContacts ? std::string("gap_") + kContactNames[contact] : std::string("lambda_") + kContactNames[contact - kContacts];
+  const std::size_t own = at - kOutputNames.size();
+  return std::string(kContactOutputs[own / kContacts]) + kContactNames[own % kContacts];
 }
 
 void InsertionPlant::outputs(VectorRef values) const {
@@ -138,9 +147,13 @@ void InsertionPlant::outputs(VectorRef values) const {
   values.segment<3>(6) = to_si(hole_, lever);
   values.segment<3>(9) << contacts_.force.head<2>(), 1e-3 * lever * contacts_.force[2];
   values[12] = 1e-3 * depth(world_.geometry, pose_, hole_);
+  values[13] = tick_peak_;
+  auto each = values.segment(14, static_cast<int>(kContactOutputs.size()) * kContacts);
   for (int i = 0; i < kContacts; ++i) {
-    values[13 + i] = 1e-3 * contacts_.gap[static_cast<std::size_t>(i)];
-    values[13 + kContacts + i] = contacts_.pressure[static_cast<std::size_t>(i)];
+    const auto at = static_cast<std::size_t>(i);
+    const std::array<double, kContactOutputs.size()> of_contact{1e-3 * contacts_.gap[at], contacts_.pressure[at], contacts_.pushes(0, i),
+                                                                contacts_.pushes(1, i), touched_[at] ? kContactMode : 0.0};
+    for (std::size_t quantity = 0; quantity < of_contact.size(); ++quantity) each[static_cast<int>(quantity) * kContacts + i] = of_contact[quantity];
   }
 }
 

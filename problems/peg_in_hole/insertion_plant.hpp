@@ -62,6 +62,7 @@ class InsertionPlant : public Plant {
 
   struct Contacts {
     std::array<double, kContacts> gap{}, pressure{};  // mm, N
+    Eigen::Matrix<double, 2, kContacts> pushes = Eigen::Matrix<double, 2, kContacts>::Zero();  // N: on the peg, of each contact with its friction
     Vector3d force{0, 0, 0};                          // on the pose, N
   };
 
@@ -102,6 +103,9 @@ class InsertionPlant : public Plant {
   bool success_ = false;
   long first_touch_ = -1;  // step
   double time_ = 0, first_touch_peak_ = 0, largest_force_ = 0, sustained_force_ = 0;
+  // since the commands last changed: the largest force (N), and who touched
+  double tick_peak_ = 0;
+  std::array<bool, kContacts> touched_{};
   double window_sum_ = 0, millisecond_sum_ = 0;
   std::vector<double> window_;
 };

@@ -138,7 +138,7 @@ ControlTask make_task(const toml_file::Document& document) {
                     beside.prior.half_width[0] = 0;
                     return make_plant(beside, holder);
                   }};
-  task.scenery = scenery_of(world.geometry);
+  task.scenery = scenery_of(problem, height_is_known);
   return task;
 }
 

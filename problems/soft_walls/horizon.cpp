@@ -50,9 +50,17 @@ void Horizon::commands(const Point& plan, double elapsed, VectorRef commands) co
   commands[0] = plan.x[kStage * k + kStates];
 }
 
-/// The tip a third, two thirds and all of the horizon ahead.
+std::string Horizon::plan_output_name(int i) const {
+  static const char* const kNames[] = {"plan_x", "plan_theta", "plan_tip"};
+  return kNames[i / intervals_] + std::to_string(i % intervals_ + 1);
+}
+
 void Horizon::plan_outputs(const Point& plan, VectorRef values) const {
-  for (int i = 0; i < kGhosts; ++i) values[i] = model_.tip().dot(plan.x.segment<kStates>(kStage * ((i + 1) * intervals_ / kGhosts)));
+  for (int k = 0; k < intervals_; ++k) {
+    const State state = plan.x.segment<kStates>(kStage * (k + 1));
+    const double foreseen[] = {state[0], state[1], model_.tip().dot(state)};
+    for (int quantity = 0; quantity < 3; ++quantity) values[quantity * intervals_ + k] = foreseen[quantity];
+  }
 }
 
 Stages Horizon::stages() const {

@@ -25,8 +25,9 @@ class Horizon final : public HorizonProgram {
   void observe(double t, ConstVectorRef measurements, ConstVectorRef estimates) override;
   void commands(const Point& plan, double elapsed, VectorRef commands) const override;
   std::string command_name(int) const override { return "u"; }
-  int num_plan_outputs() const override { return kGhosts; }
-  std::string plan_output_name(int i) const override { return "plan_tip" + std::to_string(i + 1); }
+  /// Cart, angle and tip at the end of each interval.
+  int num_plan_outputs() const override { return 3 * intervals_; }
+  std::string plan_output_name(int i) const override;
   void plan_outputs(const Point& plan, VectorRef values) const override;
 
   int num_variables() const override { return 5 * intervals_ + 4; }
@@ -46,8 +47,6 @@ class Horizon final : public HorizonProgram {
   std::string variable_name(int i) const override;
 
  private:
-  static constexpr int kGhosts = 3;
-
   Model model_;
   Weights weights_;
   int intervals_;

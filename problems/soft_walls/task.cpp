@@ -54,10 +54,11 @@ Weights read_weights(const Table& root) {
 }
 
 /// The wall's face, and the pole on its cart.
-Scenery scenery_of(const Parameters& p) {
+Scenery scenery_of(const Parameters& p, int intervals) {
   constexpr double kCartHeight = 0.08, kThin = 0.012;
   Scenery scenery;
   scenery.extent = 2.6 * p.wall;
+  scenery.camera_target = Eigen::Vector3d(0, p.pole_length / 2, 0);
   SceneryBody walls{.name = "walls"};
   for (const double side : {1.0, -1.0})
     walls.shapes.push_back(SceneryShape::half_space(Eigen::Vector3d(-side, 0, 0), Eigen::Vector3d(side * p.wall, 0, 0)).colored("ground"));
@@ -70,8 +71,10 @@ Scenery scenery_of(const Parameters& p) {
   const SceneryPoint tip{.body = "pole", .at = {0, p.pole_length, 0}};
   scenery.arrows = {{.name = "right wall", .at = tip, .vector = {SceneryValue("lambda_right", {0, -1}), 0, 0}, .frame = "world"},
                     {.name = "left wall", .at = tip, .vector = {"lambda_left", 0, 0}, .frame = "world"}};
-  scenery.plots = {{.title = "Tip, and where the plan has it", .unit = "m", .columns = {"tip", "plan_tip1", "plan_tip2", "plan_tip3"},
-                    .lower = -p.wall, .upper = p.wall},
+  scenery.ghosts = {{.body = "pole", .count = intervals, .position = {"plan_x#", 0, 0}, .angle = SceneryValue("plan_theta#")}};
+  scenery.plots = {{.title = "Tip between the walls, and the plan", .unit = "m", .columns = {"tip"},
+                    .lower = -p.wall, .upper = p.wall, .foresights = {{"plan_tip#", intervals, p.step}}},
+                   {.title = "Cart, and the plan", .unit = "m", .columns = {"x"}, .foresights = {{"plan_x#", intervals, p.step}}},
                    {.title = "Walls' forces", .unit = "N", .columns = {"lambda_right", "lambda_left"}},
                    {.title = "Force on the cart", .unit = "N", .columns = {"u"}}};
   return scenery;
@@ -94,8 +97,8 @@ ControlTask make_task(const toml_file::Document& document) {
   task.period = model.parameters().step;
   task.duration = positive(parameters, "duration", 6);
   task.plant = std::make_unique<WallsPlant>(model, weights, start, spread);
-  task.program = std::make_unique<Horizon>(model, weights, positive_integer(parameters, "intervals", 10),
-                                           positive(parameters, "rounding", 2e-3), start);
+  const int intervals = positive_integer(parameters, "intervals", 10);
+  task.program = std::make_unique<Horizon>(model, weights, intervals, positive(parameters, "rounding", 2e-3), start);
   // No inequality stands in this program: each iteration is a Newton step, and the rows are well scaled as they are.
   for (Options* options : {&task.options.warm, &task.options.cold}) {
     options->tolerance = 1e-6;
@@ -104,7 +107,7 @@ ControlTask make_task(const toml_file::Document& document) {
   task.options.warm.max_iterations = 20;
   task.options.cold.max_iterations = 100;
   task.baselines.push_back({.name = "lqr", .controller = std::make_unique<LinearQuadraticRegulator>(model, weights)});
-  task.scenery = scenery_of(model.parameters());
+  task.scenery = scenery_of(model.parameters(), intervals);
   return task;
 }
 

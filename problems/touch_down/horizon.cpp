@@ -37,16 +37,15 @@ void Horizon::commands(const Point& plan, double elapsed, VectorRef commands) co
 }
 
 std::string Horizon::plan_output_name(int i) const {
-  return (i < kGhosts ? "plan_z" : "plan_force") + std::to_string(i % kGhosts + 1);
+  const int n = parameters_.intervals;
+  return (i < n ? "plan_z" : "plan_force") + std::to_string(i % n + 1);
 }
 
-/// Position (m) and force (N) a sixth, a half and all of the horizon ahead.
 void Horizon::plan_outputs(const Point& plan, VectorRef values) const {
   const int n = parameters_.intervals;
-  const int at[kGhosts] = {(n + 5) / 6, (n + 1) / 2, n};
-  for (int i = 0; i < kGhosts; ++i) {
-    values[i] = plan.x[kStage * at[i] + kZ] / kLength;
-    values[kGhosts + i] = plan.x[kStage * std::min(at[i], n - 1) + kLambda];
+  for (int k = 0; k < n; ++k) {
+    values[k] = plan.x[kStage * (k + 1) + kZ] / kLength;
+    values[n + k] = plan.x[kStage * k + kLambda];
   }
 }
 

@@ -45,7 +45,8 @@ class Horizon final : public HorizonProgram {
   void observe(double t, ConstVectorRef measurements, ConstVectorRef estimates) override;
   void commands(const Point& plan, double elapsed, VectorRef commands) const override;
   std::string command_name(int) const override { return "w"; }
-  int num_plan_outputs() const override { return 2 * kGhosts; }
+  /// Position (m) at the end of each interval, force (N) over it.
+  int num_plan_outputs() const override { return 2 * parameters_.intervals; }
   std::string plan_output_name(int i) const override;
   void plan_outputs(const Point& plan, VectorRef values) const override;
 
@@ -69,7 +70,6 @@ class Horizon final : public HorizonProgram {
  private:
   // of a stage: z, v, the w before, and behind these w and lambda; rows of the dynamics, then of the contact
   static constexpr int kStates = 3, kStage = 5, kDynamics = 3, kRows = 7;
-  static constexpr int kGhosts = 3;
   using Row = Eigen::Matrix<double, 1, kStage>;
 
   Row barrier_row() const;

@@ -50,7 +50,7 @@ ControlTask::Baseline pair_baseline(Parameters parameters, const World& world, c
 }
 
 // z downwards; the wrist is a bar whose lower face is at z
-Scenery scenery_of(const World& world) {
+Scenery scenery_of(const World& world, const Parameters& horizon) {
   constexpr double kWidth = 0.03, kHeight = 0.006;
   Scenery scenery;
   scenery.up = Eigen::Vector3d(0, -1, 0);
@@ -60,17 +60,18 @@ Scenery scenery_of(const World& world) {
   SceneryBody wrist{.name = "wrist", .position = {0, "z", 0}};
   wrist.shapes = {SceneryShape::box({kWidth, kHeight, 0}).at({0, -kHeight / 2, 0}).colored("link")};
   scenery.bodies = {plane, wrist};
-  for (const std::string number : {"1", "2", "3"}) {
-    SceneryBody ghost{.name = "plan " + number, .position = {0, "plan_z" + number, 0}};
-    ghost.shapes = {SceneryShape::line({{-kWidth / 2, 0, 0}, {kWidth / 2, 0, 0}}).colored("frame")};
-    scenery.bodies.push_back(ghost);
-  }
-  SceneryBody believed{.name = "believed plane", .position = {0, "plane_believed", 0}};
-  believed.shapes = {SceneryShape::line({{-kWidth, 0, 0}, {kWidth, 0, 0}}).colored("force")};
+  SceneryBody believed{.name = "believed plane", .position = {0, "plane_believed", 0}, .outline = true};
+  believed.shapes = {SceneryShape::line({{-kWidth, 0, 0}, {kWidth, 0, 0}})};
   scenery.bodies.push_back(believed);
+  scenery.ghosts = {{.body = "wrist", .count = horizon.intervals, .position = {0, "plan_z#", 0}}};
+  scenery.lenses = {{.name = "contact", .body = "plane", .extent = 6e-3}};
   scenery.arrows = {{.name = "contact", .at = {.body = "wrist"}, .vector = {0, SceneryValue("lambda", {0, -1}), 0}, .frame = "world"}};
-  scenery.plots = {{.title = "Contact force, and the plan's", .unit = "N", .columns = {"lambda", "plan_force1", "plan_force2", "plan_force3"}},
-                   {.title = "Position, plan and plane", .unit = "m", .columns = {"z", "plan_z1", "plan_z2", "plan_z3", "plane", "plane_believed"}},
+  const auto plan = [&](const std::string& columns) { return std::vector<SceneryPlot::Foresight>{{columns, horizon.intervals, horizon.step}}; };
+  scenery.plots = {{.title = "Contact force and plan", .unit = "N", .columns = {"lambda"}, .foresights = plan("plan_force#")},
+                   {.title = "Position and plan; the plane, and where it is believed", .unit = "m",
+                    .columns = {"z", "plane", "plane_believed"}, .bands = {{"plane_believed", "cov_plane_believed_plane_believed"}},
+                    .foresights = plan("plan_z#")},
+                   {.title = "Gap between wrist and plane", .unit = "m", .columns = {"gap"}},
                    {.title = "Command", .unit = "m/s^2", .columns = {"w"}},
                    {.title = "Speed", .unit = "m/s", .columns = {"v"}}};
   return scenery;
@@ -108,7 +109,7 @@ ControlTask make_task(const toml_file::Document& document) {
                                        .force = world.wanted_force, .largest_input = parameters.largest_input, .period = task.period};
   task.baselines.push_back({.name = "tracking", .controller = std::make_unique<TrackingLaw>(tracking)});
   task.baselines.push_back(pair_baseline(parameters, world, knowledge));
-  task.scenery = scenery_of(world);
+  task.scenery = scenery_of(world, parameters);
   return task;
 }
 

@@ -4,8 +4,10 @@ import {AmbientLight, Box3, Color, DirectionalLight, GridHelper, HemisphereLight
 import {OrbitControls} from "three/examples/jsm/controls/OrbitControls.js";
 import {Arrow, Body, Link, Trail} from "./bodies.js";
 import {element} from "./element.js";
-import {withUnit} from "./format.js";
+import {scaled} from "./format.js";
+import {kLensLayer, Lens} from "./lens.js";
 import {kY, vector} from "./shapes.js";
+import {Ellipse, Ghosts} from "./sketch.js";
 import {lastRowAt} from "./table.js";
 import {color, onThemeChange} from "./theme.js";
 
@@ -65,7 +67,7 @@ export class Animation {
 
   /// Puts the picture into its frame and keeps it as large as that.
   mount(frame) {
-    frame.append(this.canvas);
+    frame.append(this.canvas, ...this.lenses.map((lens) => lens.frame));
     new ResizeObserver(() => this.resize()).observe(frame);
     this.resize();
   }
@@ -84,7 +86,12 @@ export class Animation {
     });
     this.links = (scenery.links ?? []).map((json) => new Link(json, this.bodies, table, planar, extent, paints));
     for (const json of scenery.arrows ?? []) this.arrows.set(json.name, new Arrow(json, this.bodies, this.arrows, table, extent, paints));
-    for (const item of [...this.links, ...this.arrows.values()]) this.scene.add(item.object);
+    const flat = (list) => (planar ? list ?? [] : []);
+    this.ghosts = flat(scenery.ghosts).map((json) => new Ghosts(json, this.bodies, table, extent, paints));
+    this.ellipses = flat(scenery.ellipses).map((json) => new Ellipse(json, this.bodies, table, paints));
+    this.lenses = flat(scenery.lenses).map((json, i) => new Lens(json, i, this.bodies, extent, paints));
+    this.placed = [...this.links, ...this.arrows.values(), ...this.ghosts, ...this.ellipses, ...this.lenses];
+    for (const item of this.placed) this.scene.add(item.object);
     this.trails = [];
   }
 
@@ -211,6 +218,7 @@ export class Animation {
       this.camera.position.copy(target).add(new Vector3(0, 0, 10 * this.extent));
       this.camera.near = 0.1 * this.extent;
       this.camera.far = 100 * this.extent;
+      this.camera.layers.enable(kLensLayer);
     } else {
       const away = (0.72 * this.extent) / Math.tan((kFieldOfView * Math.PI) / 360);
       const direction = asked.direction ? vector(asked.direction) : new Vector3(0.9, -1.3, 0).addScaledVector(this.up, 0.65);
@@ -236,6 +244,7 @@ export class Animation {
       this.camera.aspect = width / height;
       this.camera.fov = width >= height ? kFieldOfView : (360 / Math.PI) * Math.atan((Math.tan((kFieldOfView * Math.PI) / 360) * height) / width);
     }
+    for (const lens of this.lenses) lens.resize(width, height);
     this.camera.updateProjectionMatrix();
     this.draw();
   }
@@ -246,7 +255,7 @@ export class Animation {
     const step = k + 1 < this.time.length ? this.time[k + 1] - this.time[k] : 0;
     const f = step > 0 ? Math.min(1, Math.max(0, (t - this.time[k]) / step)) : 0;
     this.placeBodies(k, f);
-    for (const item of [...this.links, ...this.arrows.values()]) item.place(k, f);
+    for (const item of this.placed) item.place(k, f);
     for (const trail of this.trails) trail.place(k);
     const followed = this.followed();
     if (followed) {
@@ -259,14 +268,31 @@ export class Animation {
   }
 
   draw() {
-    if (this.camera) this.renderer.render(this.scene, this.camera);
+    if (!this.camera) return;
+    const {clientWidth: width, clientHeight: height} = this.canvas;
+    this.renderer.setViewport(0, 0, width, height);
+    this.renderer.render(this.scene, this.camera);
+    for (const lens of this.lenses.filter(({box}) => box)) {
+      this.setArrowWidth(height / (this.camera.top - this.camera.bottom) / lens.sharpness);
+      lens.draw(this.renderer, this.scene, this.up, height);
+    }
+    if (this.lenses.length > 0) this.setArrowWidth(1);
   }
 
-  /// What stands below the picture: what an arrow's length means.
+  setArrowWidth(width) {
+    for (const arrow of this.arrows.values()) if (arrow.object.visible) arrow.setWidth(width);
+  }
+
+  /// What stands below the picture: what an arrow's length means, what is there and what only planned or believed.
   key() {
-    return Object.entries(this.largest).filter(([, value]) => value > 0).map(([kind, value]) =>
-        element("span", {class: "key"}, element("i", {class: "arrow-key", style: `background: var(--scene-${kind})`}),
-                `longest ${kind} ${withUnit(value, kUnits[kind] ?? "", 3)}`));
+    const line = (role, text) => element("span", {class: "key"}, element("i", {class: "arrow-key", style: `background: var(--scene-${role})`}), text);
+    const believed = this.planar && (this.scenery.bodies ?? []).some((body) => body.outline);
+    return [
+      ...Object.entries(this.largest).filter(([, value]) => value > 0)
+          .map(([kind, value]) => line(kind, `longest ${kind} ${scaled(value, kUnits[kind] ?? "", 3)}`)),
+      ...(this.ghosts.length > 0 ? [line("plan", "planned")] : []),
+      ...(believed ? [line("believed", this.ellipses.length > 0 ? "believed, with 1 and 2 standard deviations" : "believed")] : []),
+    ];
   }
 
   describe() {

@@ -19,3 +19,8 @@ export function bind(value, table) {
 export function bindVector(values, table) {
   return [0, 1, 2].map((i) => bind(values?.[i] ?? 0, table));
 }
+
+/// A value in whose column's name a # stands for i.
+export function numbered(value, i) {
+  return typeof value === "string" ? value.replace("#", i) : value;
+}

@@ -2,6 +2,7 @@
 import {BufferGeometry, ConeGeometry, CylinderGeometry, DoubleSide, Float32BufferAttribute, Group, Line, LineBasicMaterial, Mesh,
         MeshBasicMaterial, Quaternion, Vector3} from "three";
 import {bind, bindVector} from "./binding.js";
+import {outlines} from "./sketch.js";
 import {kX, makeShape, pointAlong, ribbon, turn} from "./shapes.js";
 
 const kTrailPoints = 2000;
@@ -14,7 +15,8 @@ export class Body {
     this.position = bindVector(json.position, table);
     this.angle = json.angle === undefined ? undefined : bind(json.angle, table);
     this.quaternion = json.quaternion?.map((value) => bind(value, table));
-    for (const shape of json.shapes ?? []) this.group.add(makeShape(shape, planar, extent, json.color ?? role, theme));
+    if (json.outline && planar) this.group.add(outlines(json.shapes, json.color ?? "believed", extent, theme));
+    else for (const shape of json.shapes ?? []) this.group.add(makeShape(shape, planar, extent, json.color ?? role, theme));
   }
 
   place(k, f) {
@@ -113,14 +115,19 @@ export class Arrow {
   }
 
   place(k, f) {
-    const length = this.measure(k, f).length() * this.scale;
-    this.object.visible = length > 2 * this.radius;
+    this.length = this.measure(k, f).length() * this.scale;
+    this.object.visible = this.length > 2 * this.radius;
     if (!this.object.visible) return;
     this.anchor.world(k, f, this.object.position);
     pointAlong(this.object, this.value);
-    const head = Math.min(1, length / (14 * this.radius));
-    this.shaft.scale.y = Math.max(1e-9, length - 7 * this.radius * head);
-    this.head.position.y = length;
+    this.setWidth(1);
+  }
+
+  /// How thick it is drawn: in a lens it is no thicker than beside it.
+  setWidth(width) {
+    const radius = width * this.radius, head = width * Math.min(1, this.length / (14 * radius));
+    this.shaft.scale.set(width, Math.max(1e-9, this.length - 7 * this.radius * head), width);
+    this.head.position.y = this.length;
     this.head.scale.setScalar(head);
   }
 }

@@ -3,9 +3,10 @@
 // The table has the columns t and contact of the collision, tau (s) and whatever was recorded over it.
 import uPlot from "uplot";
 import {element, whenSeen} from "./element.js";
-import {duration, number} from "./format.js";
+import {duration, number, prefixed} from "./format.js";
 import {axis} from "./plots.js";
 import {onThemeChange, seriesColor} from "./theme.js";
+import {largestOf, shownUnit, unitOf} from "./units.js";
 
 const kMost = 12;  // pictures
 
@@ -22,16 +23,18 @@ function phasesOf(table) {
 
 function picture(table, rows, name, k, unitOfTime) {
   const frame = element("div", {class: "frame", style: "min-height: 120px"});
+  const {unit, factor} = prefixed(unitOf(name), largestOf([table.numbers(name)]));
   whenSeen(frame, () => {
     const values = table.numbers(name), tau = table.numbers("tau");
     const plot = new uPlot({
       width: Math.max(160, frame.clientWidth), height: 120, pxAlign: false, legend: {show: false}, cursor: {y: false, points: {size: 5}}, scales: {x: {time: false}},
-      axes: [axis({size: 24, values: (_, splits) => splits.map((v) => number(v, 3))}), axis({size: 52, values: (_, splits) => splits.map((v) => number(v, 3))})],
+      axes: [axis({size: 24, values: (_, splits) => splits.map((v) => number(v, 3))}), axis({size: 52, values: (_, splits) => splits.map((v) => number(v * factor, 3))})],
       series: [{}, {label: name, stroke: () => seriesColor(k), width: 1.4, points: {show: false}}],
     }, [rows.map((k) => tau[k] / unitOfTime), rows.map((k) => values[k])], frame);
     onThemeChange(() => plot.redraw(false));
   });
-  return element("figure", {class: "plot", "aria-label": `${name} over the collision's own time`}, element("figcaption", {}, name), frame);
+  const caption = element("figcaption", {}, name.replaceAll("_", " "), unit ? element("span", {class: "unit"}, shownUnit(unit)) : undefined);
+  return element("figure", {class: "plot", "aria-label": `${name} over the collision's own time`}, caption, frame);
 }
 
 export function fastPhases(table) {

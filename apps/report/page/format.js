@@ -15,6 +15,24 @@ export function withUnit(value, unit, digits) {
   return number(value, digits) + (unit && unit !== "1" ? "\u202f" + unit : "");
 }
 
+const kSmall = [[0.1, "m", 1e3], [1e-4, "µ", 1e6], [1e-7, "n", 1e9]], kLeast = 1e-10, kLarge = 1e4;
+const kTakesPrefix = /^(m|s|N|J|W|rad|N m|m\/s|rad\/s)$/, kTakesKilo = /^(N|J|W|N m)$/;
+
+/// The unit with the prefix that suits values of this magnitude, and what they are multiplied by.
+export function prefixed(unit, magnitude) {
+  const plain = {unit, factor: 1};
+  if (!kTakesPrefix.test(unit ?? "") || !(magnitude > kLeast)) return plain;
+  if (magnitude >= kLarge && kTakesKilo.test(unit)) return {unit: "k" + unit, factor: 1e-3};
+  const [, prefix, factor] = kSmall.findLast(([below]) => magnitude < below) ?? [];
+  return prefix === undefined ? plain : {unit: prefix + unit, factor};
+}
+
+/// A value in the unit that suits it: 3 mm, 0.25 N.
+export function scaled(value, unit, digits) {
+  const {unit: shown, factor} = prefixed(unit, Math.abs(value));
+  return withUnit(value * factor, shown, digits);
+}
+
 /// A duration in s, with a unit that suits it.
 export function duration(seconds) {
   const magnitude = Math.abs(seconds);

@@ -45,21 +45,24 @@ function split(group) {
   return [...stems].map(([stem, columns]) => ({...group, title: `${group.title}: ${stem}`, columns}));
 }
 
-/// [{title, unit, columns, limits, rank}], from the top; columns of constants are left out, they are in the table of columns.
+/// [{title, unit, columns, limits, bands, foresights, rank, folded}], from the top; columns of constants are left out, they are in the table of columns.
 export function plotGroups(table, timeName, scenery) {
   const groups = new Map(), taken = new Set([timeName]);
   (scenery?.plots ?? []).forEach((plot, i) => {
     const columns = plot.columns.filter((name) => table.has(name));
     columns.forEach((name) => taken.add(name));
-    if (columns.length > 0) groups.set("asked" + i, {title: plot.title, unit: plot.unit ?? "", columns, limits: plot.limits, rank: 1 + i / 100});
+    const {title, unit = "", limits, bands, foresights} = plot;
+    const folded = columns.every((name) => table.columns.get(name).constant !== undefined);  // nothing to be seen
+    if (columns.length > 0) groups.set("asked" + i, {title, unit, columns, limits, bands, foresights, rank: 1 + i / 100, folded});
   });
+  const folded = groups.size > 0;  // who asks for plots has said what is to be seen first
   for (const name of table.names) {
     const {constant, texts} = table.columns.get(name);
     if (taken.has(name) || (constant !== undefined && !/^mode_/.test(name)) || texts?.length === 1) continue;
     const [, title, unit, rank] = kindOf(name) ?? [null, name.replace(/\d+$/, ""), "", kOther];
     if (table.isText(name) && rank > 0) continue;
     const key = title + rank;
-    if (!groups.has(key)) groups.set(key, {title, unit, columns: [], rank});
+    if (!groups.has(key)) groups.set(key, {title, unit, columns: [], rank, folded: folded && rank === kOther});
     groups.get(key).columns.push(name);
   }
   return [...groups.values()].sort((a, b) => a.rank - b.rank).flatMap((group) => (group.rank === 0 ? [group] : split(group)));

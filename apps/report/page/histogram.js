@@ -1,44 +1,67 @@
-// A histogram on a canvas: equal bins by the rule of Freedman and Diaconis, width = 2 IQR / cbrt(n), at most 60 of them.
+// A histogram on a canvas: equal bins by the rule of Freedman and Diaconis, width = 2 IQR / cbrt(n), 20 to 60 of them where there are enough values;
+// whole numbers where the values are such.
 import {element} from "./element.js";
-import {number} from "./format.js";
-import {color, onThemeChange} from "./theme.js";
+import {number, prefixed, withUnit} from "./format.js";
+import {percentile, sorted} from "./statistics.js";
+import {color, onThemeChange, seriesColor} from "./theme.js";
+import {largestOf} from "./units.js";
 
-const kMostBins = 60, kHeight = 120;
+const kMostBins = 60, kEnoughBins = 20, kHeight = 120;
 
-/// {low, high, counts} of the finite values.
-export function bins(values) {
-  const sorted = Float64Array.from(values).filter(Number.isFinite).sort();
-  const low = sorted[0], high = sorted[sorted.length - 1], at = (share) => sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))];
-  const width = (2 * (at(0.75) - at(0.25))) / Math.cbrt(sorted.length);
-  const count = high > low ? Math.min(kMostBins, Math.max(5, width > 0 ? Math.ceil((high - low) / width) : 10)) : 1;
-  const counts = new Array(count).fill(0);
-  for (const v of sorted) ++counts[Math.min(count - 1, Math.floor(((v - low) / (high - low || 1)) * count))];
-  return {low, high, counts, median: at(0.5), p95: at(0.95)};
+/// {low, high, count} of the bins that hold all values of a sorted sample.
+export function bins(sample) {
+  const low = sample[0], high = sample[sample.length - 1], width = (2 * (percentile(sample, 0.75) - percentile(sample, 0.25))) / Math.cbrt(sample.length);
+  if (!(high > low)) return {low, high, count: 1};
+  if (sample.every(Number.isInteger) && high - low < kMostBins) {
+    const step = Math.max(1, Math.floor(width)), count = Math.ceil((high - low + 1) / step);
+    return {low: low - 0.5, high: low - 0.5 + count * step, count};
+  }
+  // The rule is for one hump; two far apart make its bins too wide.
+  const least = Math.min(kEnoughBins, Math.ceil(Math.sqrt(sample.length)));
+  return {low, high, count: Math.min(kMostBins, Math.max(least, width > 0 ? Math.ceil((high - low) / width) : 0))};
 }
 
-/// values: all; of them `failed` (a list, may be empty) is drawn in the colour of failure, on top of the rest's bins.
-export function histogram(name, values, failed = []) {
-  const {low, high, counts, median, p95} = bins(values);
-  const failures = new Array(counts.length).fill(0);
-  for (const v of failed) ++failures[Math.min(counts.length - 1, Math.floor(((v - low) / (high - low || 1)) * counts.length))];
+function countsOf(values, {low, high, count}) {
+  const counts = new Array(count).fill(0);
+  for (const v of values) ++counts[Math.min(count - 1, Math.floor(((v - low) / (high - low || 1)) * count))];
+  return counts;
+}
+
+/// sets: [{name, values, failed}], of one quantity on common bins; the first is drawn as bars, those that failed on top of the others in their
+/// colour, each further set as a line in its own.
+export function histogram(name, unit, sets) {
+  const samples = sets.map(({values}) => sorted(values)), all = sorted(samples.flatMap((sample) => [...sample])), grid = bins(all);
+  const counts = samples.map((sample) => countsOf(sample, grid)), failures = countsOf(sorted(sets[0].failed), grid);
+  const most = Math.max(...counts.flat());
+  const scale = prefixed(unit, largestOf([all])), text = (v) => number(v * scale.factor, 3), inUnit = (v) => withUnit(v * scale.factor, scale.unit, 3);
+  const note = `median ${text(percentile(samples[0], 0.5))}, 95 % below ${inUnit(percentile(samples[0], 0.95))}`;
   const canvas = element("canvas", {class: "histogram", role: "img", style: `height: ${kHeight}px`,
-                                    "aria-label": `Histogram of ${name}: ${number(low, 4)} to ${number(high, 4)}, median ${number(median, 4)}`});
+                                    "aria-label": `Histogram of ${name}: ${inUnit(all[0])} to ${inUnit(all[all.length - 1])}; ${sets[0].name}: ${note}`});
   const draw = () => {
     const ratio = window.devicePixelRatio, width = canvas.clientWidth;
     if (width === 0) return;
     canvas.width = width * ratio;
     canvas.height = kHeight * ratio;
-    const context = canvas.getContext("2d"), most = Math.max(...counts), step = canvas.width / counts.length;
-    counts.forEach((count, i) => {
-      const tall = (count / most) * canvas.height, fails = (failures[i] / most) * canvas.height;
-      context.fillStyle = color("series-0");
-      context.fillRect(i * step, canvas.height - tall, step - ratio, tall);
-      context.fillStyle = color("bad");
-      context.fillRect(i * step, canvas.height - fails, step - ratio, fails);
+    const context = canvas.getContext("2d"), step = canvas.width / grid.count, tall = (count) => (count / most) * (canvas.height - 2 * ratio);
+    const bars = (list, paint) => {
+      context.fillStyle = color(paint);
+      list.forEach((count, i) => context.fillRect(i * step, canvas.height - tall(count), step - ratio, tall(count)));
+    };
+    bars(counts[0], "series-0");
+    bars(failures, "bad");
+    counts.slice(1).forEach((list, k) => {
+      context.strokeStyle = seriesColor(k + 1);
+      context.lineWidth = 1.6 * ratio;
+      context.beginPath();
+      list.forEach((count, i) => {
+        context.lineTo(i * step, canvas.height - tall(count));
+        context.lineTo((i + 1) * step, canvas.height - tall(count));
+      });
+      context.stroke();
     });
   };
   new ResizeObserver(draw).observe(canvas);
   onThemeChange(draw);
-  return element("figure", {class: "plot"}, element("figcaption", {}, name, element("span", {class: "note"}, `median ${number(median, 4)}, 95 % below ${number(p95, 4)}`)),
-                 canvas, element("p", {class: "ends"}, element("span", {}, number(low, 4)), element("span", {}, number(high, 4))));
+  return element("figure", {class: "plot"}, element("figcaption", {}, name.replaceAll("_", " "), element("span", {class: "note"}, note)), canvas,
+                 element("p", {class: "ends"}, element("span", {}, inUnit(all[0])), element("span", {}, inUnit(all[all.length - 1]))));
 }

@@ -52,7 +52,8 @@ function span(u, time, run) {
   return [from, Math.max(to - from, from < bbox.left + bbox.width && to >= bbox.left ? devicePixelRatio : 0)];
 }
 
-export function lanesPlugin(lanes, time) {
+/// `names` are written into the lanes, where they have no room beside them.
+export function lanesPlugin(lanes, time, names) {
   return {hooks: {drawClear: (u) => {
     const {ctx, bbox} = u, height = bbox.height / lanes.length;
     ctx.save();
@@ -64,6 +65,10 @@ export function lanesPlugin(lanes, time) {
         ctx.fillRect(x, bbox.top + (i + 0.15) * height, width, 0.7 * height);
       }
     });
+    ctx.fillStyle = color("ink");
+    ctx.font = `${10 * devicePixelRatio}px system-ui, sans-serif`;
+    ctx.textBaseline = "middle";
+    names.forEach((name, i) => ctx.fillText(name, bbox.left + 4 * devicePixelRatio, bbox.top + (i + 0.5) * height));
     ctx.restore();
   }}};
 }

@@ -1,14 +1,17 @@
 // The plots of one record: a common cursor, a common zoom in time, a line at the clock's time, bands where a mode holds, marks at events.
 import uPlot from "uplot";
 import {element, whenSeen} from "./element.js";
-import {number} from "./format.js";
+import {number, prefixed} from "./format.js";
 import {kOther} from "./groups.js";
 import {bandPlugin, lanesOf, lanesPlugin, laneHeight} from "./modes.js";
+import {bandRange, confidencePlugin, eventsPlugin, foreseenRange, foresightPlugin, limitsPlugin} from "./overlays.js";
 import {lastRowAt} from "./table.js";
 import {color, kSeriesColors, onThemeChange, seriesColor} from "./theme.js";
+import {largestOf, shownUnit} from "./units.js";
 
 const kHeight = 158;
 const kRounding = 1e-10;  // values that differ by less are drawn as one
+const kBesideMost = 8;   // letters of a lane's name that have room beside it
 const kLegendMost = 12;  // beyond, a legend says less than the picture
 
 /// Of the quantities that are no part of the scene, positive values over more than four decades are read on a logarithmic axis.
@@ -42,32 +45,13 @@ export function logAxis(extra = {}) {
   return axis({...extra, splits, values: (_, powers) => powers.map((v) => number(v, 4)), filter: (_, powers) => powers});
 }
 
-const kLabels = {size: 58, values: (_, splits) => splits.map((v) => (v === null ? "" : number(v, 4)))};
+const kLabelSize = 58;
 
-/// Dashed lines at the limits of a group.
-function limitsPlugin(limits) {
-  return {
-    hooks: {
-      draw: (u) => {
-        const {ctx, bbox} = u;
-        ctx.save();
-        ctx.strokeStyle = color("limit");
-        ctx.lineWidth = devicePixelRatio;
-        ctx.setLineDash([6 * devicePixelRatio, 4 * devicePixelRatio]);
-        for (const limit of limits ?? []) {
-          if (limit === null) continue;
-          const y = u.valToPos(limit, "y", true);
-          if (y < bbox.top || y > bbox.top + bbox.height) continue;
-          ctx.beginPath();
-          ctx.moveTo(bbox.left, y);
-          ctx.lineTo(bbox.left + bbox.width, y);
-          ctx.stroke();
-        }
-        ctx.restore();
-      },
-    },
-  };
-}
+/// As many digits as tell neighbours apart.
+const labels = (factor = 1) => ({size: kLabelSize, values: (_, splits) => {
+  const step = Math.abs(splits[1] - splits[0]) || 1, digits = 1 + Math.ceil(Math.log10(Math.max(...splits.map(Math.abs)) / step + 1e-9));
+  return splits.map((v) => (v === null ? "" : number(v * factor, Math.max(4, Math.min(9, digits)))));
+}});
 
 export class Plots {
   /// `groups` as groups.js makes them; `events` [{t, text}].
@@ -79,50 +63,67 @@ export class Plots {
     this.lanes = lanesOf(table);
     this.zoom = [clock.start, clock.end];
     this.node = element("div", {class: "plots"});
-    for (const group of groups) this.addPlace(group);
-    clock.listen(() => this.placeHeads());
+    for (const group of groups.filter((group) => !group.folded)) this.node.append(this.placeFor(group));
+    this.addFold(groups.filter((group) => group.folded));
+    clock.listen(() => {
+      for (const {plot, group} of this.plots) if (group.foresights) plot.redraw(false);
+      this.placeHeads();
+    });
     onThemeChange(() => this.plots.forEach(({plot}) => plot.redraw(false)));
   }
 
-  addPlace(group) {
+  addFold(groups) {
+    if (groups.length === 0) return;
+    const names = groups.flatMap((group) => group.columns);
+    const summary = element("summary", {}, `More curves (${names.length})`);
+    this.node.append(element("details", {class: "plots"}, summary, ...groups.map((group) => this.placeFor(group))));
+  }
+
+  /// Where a plot will be, once it is seen.
+  placeFor(group) {
     const isModes = group.rank === 0;
     const lanes = this.lanes.filter((lane) => group.columns.includes(lane.column));
     const height = isModes ? laneHeight(lanes) + 36 : kHeight;
-    const unit = group.unit ? element("span", {class: "unit"}, group.unit) : undefined;
+    const arrays = isModes ? [] : group.columns.map((name) => this.table.numbers(name));
+    const logarithmic = group.rank >= kOther && isWide(arrays);
+    const scale = prefixed(group.unit, logarithmic ? 1 : largestOf(arrays));
+    const unit = scale.unit ? element("span", {class: "unit"}, shownUnit(scale.unit)) : undefined;
     const frame = element("div", {class: "frame", style: `min-height: ${height}px`});
-    const names = `${group.title}${group.unit ? " in " + group.unit : ""} over time: ${group.columns.slice(0, kLegendMost).join(", ")}`;
+    const names = `${group.title}${scale.unit ? " in " + scale.unit : ""} over time: ${group.columns.slice(0, kLegendMost).join(", ")}`;
     const figure = element("figure", {class: "plot", role: "group", "aria-label": names}, element("figcaption", {}, group.title, unit), frame);
-    this.node.append(figure);
-    whenSeen(figure, () => (isModes ? this.makeLanes(group, frame, height, lanes) : this.makeCurves(group, frame, height)));
+    whenSeen(figure, () => (isModes ? this.makeLanes(group, frame, height, lanes) : this.makeCurves(group, frame, height, arrays, {logarithmic, factor: scale.factor})));
+    return figure;
   }
 
-  makeCurves(group, frame, height) {
-    const arrays = group.columns.map((name) => this.table.numbers(name));
-    const logarithmic = group.rank >= kOther && isWide(arrays);
+  makeCurves(group, frame, height, arrays, {logarithmic, factor}) {
     const many = group.columns.length > kLegendMost;
+    const held = [...(group.limits ?? []), ...foreseenRange(group.foresights, this.table), ...bandRange(group.bands, this.table)];
     this.add(group, frame, {
       height,
       legend: {show: !many, markers: {width: 0, fill: (_, i) => `var(--series-${(i - 1) % kSeriesColors})`}},
-      scales: {x: this.timeScale(), y: logarithmic ? {distr: 3} : this.valueScale(group.limits)},
-      axes: [axis({size: 26}), logarithmic ? logAxis({size: kLabels.size}) : axis(kLabels)],
+      scales: {x: this.timeScale(), y: logarithmic ? {distr: 3} : this.valueScale(held)},
+      axes: [axis({size: 26}), logarithmic ? logAxis({size: kLabelSize}) : axis(labels(factor))],
       series: [{}, ...group.columns.map((name, i) => ({
-        label: name, stroke: () => seriesColor(i), width: many ? 0.75 : 1.4, points: {show: false}, value: (_, v) => number(v, 6),
+        label: name, stroke: () => seriesColor(i), width: many ? 0.75 : 1.4, points: {show: false},
+        value: (_, v) => number(v === null ? v : v * factor, 5),
       }))],
-      plugins: [bandPlugin(this.lanes, this.time), limitsPlugin(group.limits), this.eventsPlugin()],
+      plugins: [bandPlugin(group.bands ? [] : this.lanes, this.time),
+                confidencePlugin(group.bands, this.table, this.time, (name) => seriesColor(group.columns.indexOf(name))),
+                limitsPlugin(group.limits), foresightPlugin(group.foresights, this.table, this.time, this.clock), eventsPlugin(this.events)],
       // A logarithmic axis has no place for 0: the line has a gap there.
     }, logarithmic ? arrays.map((values) => Array.from(values, (v) => (v > 0 ? v : null))) : arrays);
   }
 
   makeLanes(group, frame, height, lanes) {
-    const names = lanes.map(({name}) => (name.length > 8 ? name.slice(0, 7) + "…" : name));
+    const names = lanes.map(({name}) => name.replaceAll("_", " ")), beside = names.every((name) => name.length <= kBesideMost);
     this.add(group, frame, {
       height,
       legend: {show: false},
       scales: {x: this.timeScale(), y: {range: [0, lanes.length]}},
-      axes: [axis({size: 26}), axis({size: kLabels.size, grid: {show: false}, ticks: {show: false}, values: () => names,
+      axes: [axis({size: 26}), axis({size: kLabelSize, grid: {show: false}, ticks: {show: false}, values: () => (beside ? names : names.map(() => "")),
                                      splits: () => names.map((_, i) => names.length - i - 0.5)})],
       series: [{}, {show: false}],
-      plugins: [lanesPlugin(lanes, this.time), this.eventsPlugin()],
+      plugins: [lanesPlugin(lanes, this.time, beside ? [] : names), eventsPlugin(this.events)],
     }, [new Float64Array(this.time.length)]);
   }
 
@@ -154,9 +155,9 @@ export class Plots {
     return {time: false, min: this.zoom[0], max: this.zoom[1]};
   }
 
-  /// A little room around the values and their limits.
-  valueScale(limits) {
-    const held = (limits ?? []).filter((limit) => limit !== null);
+  /// A little room around the values and what else is to be seen (numbers; null for none).
+  valueScale(others) {
+    const held = others.filter((value) => value !== null);
     return {range: (_, low, high) => {
       if (low === null) return [0, 1];
       const least = Math.min(low, ...held), most = Math.max(high, ...held);
@@ -164,25 +165,6 @@ export class Plots {
       const room = isFlat ? Math.abs(most) * 0.1 || 1 : 0.06 * (most - least);
       return [least - room, most + room];
     }};
-  }
-
-  /// Thin lines where events are.
-  eventsPlugin() {
-    return {hooks: {drawClear: (u) => {
-      const {ctx, bbox} = u;
-      ctx.save();
-      ctx.strokeStyle = color("event");
-      ctx.lineWidth = devicePixelRatio;
-      ctx.beginPath();
-      for (const {t} of this.events) {
-        if (t < u.scales.x.min || t > u.scales.x.max) continue;
-        const x = Math.round(u.valToPos(t, "x", true)) + 0.5;
-        ctx.moveTo(x, bbox.top);
-        ctx.lineTo(x, bbox.top + bbox.height);
-      }
-      ctx.stroke();
-      ctx.restore();
-    }}};
   }
 
   zoomed(source) {

@@ -4,6 +4,7 @@ import {Clock} from "./clock.js";
 import {auditNote} from "./energy_audit.js";
 import {element, download, whenSeen} from "./element.js";
 import {clockTime, number} from "./format.js";
+import {EstimateMap} from "./estimate_map.js";
 import {plotGroups} from "./groups.js";
 import {laneKey} from "./modes.js";
 import {Plots} from "./plots.js";
@@ -50,11 +51,14 @@ export class Record {
   constructor(part, index) {
     this.table = new Table(part);
     this.scenery = part.scenery;
+    this.hasPicture = part.scenery?.bodies?.length > 0;
     this.eventsTable = part.events && new Table(part.events);
     this.time = this.table.numbers("t");
     this.events = readEvents(this.eventsTable);
     this.clock = new Clock(this.time[0], this.time[this.time.length - 1], [...new Set(this.events.map((event) => event.t))]);
     this.plots = new Plots(this.table, "t", plotGroups(this.table, "t", this.scenery), this.clock, this.events);
+    this.estimates = (this.scenery?.estimates ?? []).map((json) => new EstimateMap(json, this.table, this.time, this.clock));
+    this.plots.node.prepend(...this.estimates.map((map) => map.node));
     this.title = this.scenery?.title ?? part.name;
     this.node = element("section", {class: "record", id: "part-" + index, "aria-label": this.title}, ...this.head(), this.body(), ...this.tables(part));
   }
@@ -75,7 +79,7 @@ export class Record {
 
   body() {
     const side = element("div", {class: "side"});
-    if (this.scenery) {
+    if (this.hasPicture) {
       const frame = element("div", {class: "stage"});
       const keys = element("p", {class: "keys"});
       side.append(frame, keys);
@@ -87,7 +91,7 @@ export class Record {
       side.append(element("p", {class: "keys"}, ...modes.map((mode) =>
           element("span", {class: "key"}, element("i", {style: `background: var(--${mode.color})`}), mode.text))));
     }
-    return element("div", {class: this.scenery ? "body with-stage" : "body"}, side, this.plots.node);
+    return element("div", {class: this.hasPicture ? "body with-stage" : "body"}, side, this.plots.node);
   }
 
   animate(frame, keys) {

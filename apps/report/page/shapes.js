@@ -61,6 +61,17 @@ function planarOutline(shape) {
   return outlineOf([[-w, -h], [w, -h], [w, h], [-w, h]]);
 }
 
+/// The line around a planar shape, in its own axes; that of a ground is its surface.
+export function planarLine(shape, extent) {
+  if (shape.line) return shape.line.points.map(vector);
+  if (shape["half-space"]) {
+    const {normal, point} = shape["half-space"], along = vector(normal).normalize();
+    return [-20, 20].map((far) => new Vector3(along.y, -along.x, 0).multiplyScalar(far * extent).add(vector(point)));
+  }
+  const points = planarOutline(shape).getPoints(32).map((p) => new Vector3(p.x, p.y, 0));
+  return [...points, points[0]];
+}
+
 /// What a shape is drawn with; the colours are those of the theme and are set again when that changes.
 class Paint {
   constructor(theme, role, planar) {
@@ -175,10 +186,14 @@ function spatialShape(shape, paint, extent) {
 /// A shape of scenery: {kind: {...}, at, axis, angle, color}. `extent` is the size of the scene, m; `role` the colour it has of itself.
 export function makeShape(shape, planar, extent, role, theme) {
   const paint = new Paint(theme, shape["half-space"] ? "ground" : shape.color ?? role, planar);
-  const mesh = planar ? planarShape(shape, paint, extent) : spatialShape(shape, paint, extent);
-  if (shape.at === undefined && shape.angle === undefined) return mesh;
+  return place(shape, planar ? planarShape(shape, paint, extent) : spatialShape(shape, paint, extent));
+}
+
+/// What a shape is drawn as, put where it stands in its body.
+export function place(shape, drawn) {
+  if (shape.at === undefined && shape.angle === undefined) return drawn;
   const placed = new Group();
-  placed.add(mesh);
+  placed.add(drawn);
   placed.position.copy(vector(shape.at));
   if (shape.angle !== undefined) placed.quaternion.copy(turn(shape.axis, shape.angle));
   return placed;

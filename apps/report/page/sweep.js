@@ -2,23 +2,19 @@
 // each baseline that ran in the same worlds (its columns are NAME.success and so on).
 import {dataTable} from "./data_table.js";
 import {download, element, whenSeen} from "./element.js";
-import {number} from "./format.js";
-import {bins, histogram} from "./histogram.js";
+import {number, prefixed} from "./format.js";
+import {histogram} from "./histogram.js";
+import {percentile, sorted} from "./statistics.js";
 import {successInterval} from "./success_interval.js";
+import {drawSuccessMap, makeSuccessMap} from "./success_map.js";
 import {Table} from "./table.js";
-import {color, onThemeChange} from "./theme.js";
-
-const kMargin = {left: 74, right: 28, top: 10, bottom: 40};
-const kCells = 12;  // of the map's rate of success, along each axis
+import {onThemeChange} from "./theme.js";
+import {largestOf, unitOf} from "./units.js";
 
 const kController = "mpc";
+const kOfTheSolver = ["steps", "iterations", "fallbacks"];  // no matter of comparison
 const percent = (share) => `${(100 * share).toFixed(1)} %`;
-
-function limits(values) {
-  let low = Infinity, high = -Infinity;
-  for (const v of values) if (Number.isFinite(v)) [low, high] = [Math.min(low, v), Math.max(high, v)];
-  return high > low ? [low, high] : [low - 0.5, high + 0.5];
-}
+const readable = (name) => name.replaceAll("_", " ");
 
 export class Sweep {
   constructor(part, index) {
@@ -26,129 +22,108 @@ export class Sweep {
     this.plots = [];
     this.title = "Sweep";
     const {names} = this.table, baselines = names.filter((name) => name.endsWith(".success")).map((name) => name.slice(0, -".success".length));
-    const select = (label, options, change) => element("select", {"aria-label": label, onchange: change}, ...options.map((name) => element("option", {}, name)));
-    this.quantities = names.filter((name) => !name.includes(".") && !["success", "seed", "sample"].includes(name) && !this.table.isText(name));
+    const isQuantity = (name) => !name.includes(".") && !["success", "seed", "sample"].includes(name) && !this.table.isText(name);
+    this.quantities = names.filter(isQuantity);
     this.contestants = [kController, ...baselines].map((name) => this.figures(name));
-    this.contestant = select("Controller", [kController, ...baselines], () => this.show());
-    this.across = select("Across", this.quantities, () => this.draw());
-    this.upward = select("Upward", this.quantities, () => this.draw());
-    this.upward.selectedIndex = Math.min(1, this.quantities.length - 1);
-    this.canvas = element("canvas", {class: "success-map", role: "img"});
-    this.histograms = element("div", {class: "histograms"});
-    this.failed = element("details");
-    const csv = element("button", {type: "button", "aria-label": "Download as CSV", onclick: () => download(part.name, this.table.csv())}, "CSV");
-    const [mpc] = this.contestants;
+    const [{successes, n, interval}] = this.contestants, save = () => download(part.name, this.table.csv());
+    const facts = `${successes} of ${n} succeeded: ${percent(successes / n)}, 95 % interval ${percent(interval[0])} to ${percent(interval[1])}`;
     this.node = element("section", {id: "part-" + index, "aria-label": this.title}, element("h2", {}, this.title),
-                        element("p", {class: "facts"}, `${mpc.successes} of ${mpc.n} succeeded: ${percent(mpc.successes / mpc.n)}, 95 % interval ${percent(mpc.interval[0])} to ${percent(mpc.interval[1])}`, csv),
-                        ...(baselines.length > 0 ? [this.comparison()] : []),
-                        element("p", {class: "facts"}, ...(baselines.length > 0 ? ["of ", this.contestant] : []), " across ", this.across, " upward ", this.upward), this.canvas,
-                        element("p", {class: "keys"}, element("span", {class: "key"}, element("i", {style: "background: var(--good)"}), "succeeded"),
-                                element("span", {class: "key"}, element("i", {style: "background: var(--bad)"}), "failed"), "tint: rate of success in a cell"),
-                        this.histograms, this.failed);
-    this.show();
-    whenSeen(this.canvas, () => new ResizeObserver(() => this.draw()).observe(this.canvas));
+                        element("p", {class: "facts"}, facts, element("button", {type: "button", "aria-label": "Download as CSV", onclick: save}, "CSV")),
+                        ...(baselines.length > 0 ? [this.comparison()] : []), ...this.maps(), ...this.histograms(),
+                        ...this.contestants.map((one) => this.failures(one)));
     onThemeChange(() => this.draw());
   }
 
-  /// The column of a quantity as a contestant has it: its own, or what was drawn for all.
-  column(name, contestant = this.contestant.value) {
-    const own = `${contestant}.${name}`;
-    return this.table.has(own) ? own : name;
+  /// The values of a quantity as a contestant has it: its own, or what was drawn for all.
+  values(quantity, contestant = kController) {
+    const own = `${contestant}.${quantity}`;
+    return this.table.numbers(this.table.has(own) ? own : quantity);
   }
 
   figures(name) {
-    const success = this.table.numbers(this.column("success", name)), successes = success.reduce((sum, v) => sum + (v > 0), 0), n = success.length;
+    const success = this.values("success", name), successes = success.reduce((sum, v) => sum + (v > 0), 0), n = success.length;
     return {name, success, successes, n, interval: successInterval(successes, n)};
   }
 
   /// One line for each contestant: the quantities that a baseline has of its own are what came of the runs.
   comparison() {
-    const baseline = this.contestants[1].name, outcomes = this.quantities.filter((name) => this.table.has(`${baseline}.${name}`));
+    const baseline = this.contestants[1].name;
+    const outcomes = this.quantities.filter((name) => this.table.has(`${baseline}.${name}`) && !kOfTheSolver.includes(name));
+    const all = (quantity) => this.contestants.map((one) => this.values(quantity, one.name));
+    const scales = new Map(outcomes.map((name) => [name, prefixed(unitOf(name), largestOf(all(name)))]));
     const lines = this.contestants.map(({name, successes, n, interval}) => {
       const line = {name, rate: `${successes} of ${n}`, interval: `${percent(interval[0])} to ${percent(interval[1])}`};
       for (const quantity of outcomes) {
-        const {median, p95} = bins(this.table.numbers(this.column(quantity, name)));
-        line[quantity] = `${number(median, 3)} / ${number(p95, 3)}`;
+        const sample = sorted(this.values(quantity, name));
+        line[quantity] = [0.5, 0.95].map((share) => number(percentile(sample, share) * scales.get(quantity).factor, 3)).join(" / ");
       }
       return line;
     });
-    return dataTable([["name", "controller"], ["rate", "succeeded"], ["interval", "95 % interval"],
-                      ...outcomes.map((name) => [name, name.replaceAll("_", " ") + " (median / 95 % below)"])], lines, {label: "Controllers in the same worlds"});
+    const heading = (name) => readable(name) + (scales.get(name).unit ? `, ${scales.get(name).unit}` : "");
+    const columns = [["name", "controller"], ["rate", "succeeded"], ["interval", "95 % interval"], ...outcomes.map((name) => [name, heading(name)])];
+    return element("div", {}, dataTable(columns, lines, {label: "Controllers in the same worlds"}),
+                   element("p", {class: "keys"}, "In the same worlds; a / b: the median is a, 95 % lie at or below b."));
   }
 
-  /// What depends on whose runs are looked at.
-  show() {
-    const {success, successes, n} = this.contestants[this.contestant.selectedIndex];
-    this.success = success;
-    this.canvas.setAttribute("aria-label", `Successes and failures over two quantities; ${successes} of ${n} succeeded`);
-    const failed = (values) => Array.from(values).filter((v, k) => !(success[k] > 0) && Number.isFinite(v));
-    const spread = this.quantities.map((name) => [name, this.table.numbers(this.column(name))]).filter(([, values]) => values.some(Number.isFinite));
-    this.histograms.replaceChildren(...spread.map(([name, values]) => histogram(name, values, failed(values))));
-    const rows = Array.from({length: this.table.kept}, (_, k) => k).filter((k) => !(success[k] > 0));
-    this.failed.replaceChildren(element("summary", {}, `Failures (${n - successes})`),
-                                dataTable(this.table.names.map((name) => [name, name.replaceAll("_", " ")]),
-                                          rows.map((k) => Object.fromEntries(this.table.names.map((name) => [name, this.table.cell(name, k)]))), {label: "Failures"}));
-    this.draw();
+  maps() {
+    const options = () => this.quantities.map((name) => element("option", {}, name));
+    const select = (label) => element("select", {"aria-label": label, onchange: () => this.draw()}, ...options());
+    this.across = select("Across");
+    this.upward = select("Upward");
+    this.upward.selectedIndex = Math.min(1, this.quantities.length - 1);
+    const seeds = this.table.numbers("seed");
+    for (const one of this.contestants) {
+      const rate = `${one.successes} of ${one.n}`;
+      one.note = element("span", {class: "note"}, rate);
+      one.canvas = makeSuccessMap(`Successes and failures of ${one.name} over two quantities; ${rate} succeeded`, (k) => {
+        one.note.textContent = k === undefined || !seeds ? rate : `--seed ${seeds[k]}: ${one.success[k] > 0 ? "succeeded" : "failed"}`;
+      });
+      whenSeen(one.canvas, () => new ResizeObserver(() => this.draw(one)).observe(one.canvas));
+    }
+    const key = (role, text) => element("span", {class: "key"}, element("i", {style: `background: var(--${role})`}), text);
+    return [element("h3", {}, "Where"), element("p", {class: "facts"}, "across ", this.across, " upward ", this.upward),
+            element("div", {class: "maps"}, ...this.contestants.map(({name, note, canvas}) =>
+                element("figure", {class: "plot"}, element("figcaption", {}, name, note), canvas))),
+            element("p", {class: "keys"}, key("good", "succeeded"), key("bad", "failed"), "tint: rate of success in a cell; a dot tells its seed to the pointer")];
   }
 
-  draw() {
-    const {canvas} = this, ratio = window.devicePixelRatio, width = canvas.clientWidth, height = canvas.clientHeight;
-    if (width === 0 || this.quantities.length === 0) return;
-    canvas.width = width * ratio;
-    canvas.height = height * ratio;
-    const context = canvas.getContext("2d");
-    context.scale(ratio, ratio);
+  draw(only) {
     const names = [this.across, this.upward].map((select) => this.quantities[select.selectedIndex]);
-    const [x, y] = names.map((name) => this.table.numbers(this.column(name))), [x0, x1] = limits(x), [y0, y1] = limits(y);
-    const inner = {width: width - kMargin.left - kMargin.right, height: height - kMargin.top - kMargin.bottom};
-    const shareX = (v) => (v - x0) / (x1 - x0), shareY = (v) => (v - y0) / (y1 - y0);
-    const toX = (share) => kMargin.left + share * inner.width, toY = (share) => kMargin.top + (1 - share) * inner.height;
+    for (const one of only ? [only] : this.contestants) {
+      const [x, y] = names.map((name) => ({name, values: this.values(name, one.name)}));
+      if (names[0] !== undefined) drawSuccessMap(one.canvas, x, y, one.success);
+    }
+  }
 
-    // Cells: success as colour, confidence as strength.
-    const good = new Float64Array(kCells * kCells), all = new Float64Array(kCells * kCells);
-    const cell = (share) => Math.min(kCells - 1, Math.max(0, Math.floor(share * kCells)));
-    for (let k = 0; k < x.length; ++k) {
-      if (!Number.isFinite(x[k]) || !Number.isFinite(y[k])) continue;
-      const at = cell(shareY(y[k])) * kCells + cell(shareX(x[k]));
-      ++all[at];
-      good[at] += this.success[k] > 0 ? 1 : 0;
-    }
-    for (let at = 0; at < all.length; ++at) {
-      if (all[at] === 0) continue;
-      const column = at % kCells, row = Math.floor(at / kCells);
-      const box = [toX(column / kCells), toY((row + 1) / kCells), inner.width / kCells, inner.height / kCells];
-      for (const [name, rate] of [["good", good[at] / all[at]], ["bad", 1 - good[at] / all[at]]]) {
-        context.globalAlpha = 0.22 * rate;
-        context.fillStyle = color(name);
-        context.fillRect(...box);
-      }
-    }
-    const radius = x.length > 3000 ? 1.2 : 2.2;
-    context.globalAlpha = x.length > 3000 ? 0.5 : 0.8;
-    for (const wanted of [true, false]) {  // failures on top
-      context.fillStyle = color(wanted ? "good" : "bad");
-      for (let k = 0; k < x.length; ++k) {
-        if (this.success[k] > 0 !== wanted || !Number.isFinite(x[k]) || !Number.isFinite(y[k])) continue;
-        context.beginPath();
-        context.arc(toX(shareX(x[k])), toY(shareY(y[k])), wanted ? radius : 1.3 * radius, 0, 2 * Math.PI);
-        context.fill();
-      }
-    }
-    context.globalAlpha = 1;
-    context.strokeStyle = color("grid");
-    context.strokeRect(kMargin.left, kMargin.top, inner.width, inner.height);
-    context.fillStyle = color("muted");
-    context.font = "11px system-ui, sans-serif";
-    context.textAlign = "center";
-    for (let i = 0; i <= 4; ++i) context.fillText(number(x0 + ((x1 - x0) * i) / 4, 3), toX(i / 4), height - 22);
-    context.fillText(names[0], toX(0.5), height - 6);
-    context.textAlign = "right";
-    for (let i = 0; i <= 4; ++i) context.fillText(number(y0 + ((y1 - y0) * i) / 4, 3), kMargin.left - 6, toY(i / 4) + 4);
-    context.save();
-    context.translate(12, toY(0.5));
-    context.rotate(-Math.PI / 2);
-    context.textAlign = "center";
-    context.fillText(names[1], 0, 0);
-    context.restore();
+  /// What was drawn stands before the success in a record, what came of it behind.
+  histograms() {
+    const {names} = this.table, isDrawn = (name) => names.indexOf(name) < names.indexOf("success");
+    const spread = this.quantities.filter((name) => this.values(name).some(Number.isFinite));
+    const failed = (values, success) => Array.from(values).filter((v, k) => !(success[k] > 0));
+    const one = (name) => {
+      const own = this.contestants.filter((c, i) => i === 0 || (this.table.has(`${c.name}.${name}`) && !kOfTheSolver.includes(name)));
+      return histogram(name, unitOf(name), own.map((c) => {
+        const values = this.values(name, c.name);
+        return {name: c.name, values, failed: failed(values, c.success)};
+      }));
+    };
+    const group = (title, list, ...more) =>
+        (list.length === 0 ? [] : [element("h3", {}, title), ...more, element("div", {class: "histograms"}, ...list.map(one))]);
+    const sample = (shape, role, text) => element("span", {class: "key"}, element("i", {class: shape, style: `background: var(--${role})`}), text);
+    const [{successes, n}] = this.contestants, bad = successes < n ? [sample(undefined, "bad", `failed (${kController})`)] : [];
+    const key = element("p", {class: "keys"}, ...this.contestants.map(({name}, i) => sample(i > 0 ? "arrow-key" : undefined, `series-${i}`, name)), ...bad);
+    return [...group("What came of it", spread.filter((name) => !isDrawn(name)), key), ...group("What was drawn", spread.filter(isDrawn))];
+  }
+
+  failures({name, success, successes, n}) {
+    const {table} = this, rows = Array.from({length: table.kept}, (_, k) => k).filter((k) => !(success[k] > 0));
+    // A baseline's own columns in place of the controller's.
+    const columns = table.names.filter((column) => (column.includes(".") ? column.startsWith(name + ".") : !table.has(`${name}.${column}`)));
+    const details = element("details", {}, element("summary", {}, `Failures of ${name} (${n - successes})`));
+    details.addEventListener("toggle", () => {
+      const lines = rows.map((k) => Object.fromEntries(columns.map((column) => [column, table.cell(column, k)])));
+      if (details.children.length === 1) details.append(dataTable(columns.map((column) => [column, readable(column)]), lines, {label: `Failures of ${name}`}));
+    }, {once: true});
+    return details;
   }
 }

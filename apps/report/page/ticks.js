@@ -1,0 +1,9 @@
+// Round numbers along an axis: 1, 2 or 5 times a power of ten apart.
+
+/// At most `most` of them from low to high.
+export function ticks(low, high, most) {
+  const least = (high - low) / most, power = 10 ** Math.floor(Math.log10(least));
+  const step = power * [1, 2, 5, 10].find((factor) => factor * power >= least * (1 - 1e-9));
+  const first = Math.ceil(low / step - 1e-9), last = Math.floor(high / step + 1e-9);
+  return Array.from({length: Math.max(0, last - first + 1)}, (_, i) => (first + i) * step);
+}
