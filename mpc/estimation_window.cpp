@@ -1,0 +1,272 @@
+#include "tenon/mpc/estimation_window.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tenon {
+
+/// Storage of an evaluation, and its outcome at every instant.
+struct EstimationWindow::Evaluation final : Nlp::Scratch {
+  Evaluation(const EstimationProblem& problem, int nx, int ny, int instants)
+      : transition(*problem.dae, problem.mode, problem.longest_step),
+        z(problem.measured->num_arguments()),
+        by_z(ny, z.size()),
+        at(std::size_t(instants), {Vector::Zero(ny), Vector::Zero(nx), Eigen::MatrixXd::Zero(ny, nx), Eigen::MatrixXd::Zero(nx, nx)}) {}
+
+  StateTransition transition;
+  Vector z;              // (x, u)
+  Eigen::MatrixXd by_z;  // of h
+  std::vector<Linearised> at;
+};
+
+namespace {
+
+Eigen::MatrixXd identity(int n) {
+  return Eigen::MatrixXd::Identity(n, n);
+}
+
+}  // namespace
+
+EstimationWindow::EstimationWindow(const EstimationProblem& problem)
+    : problem_(problem),
+      nx_(problem.dae->num_states()),
+      ny_(problem.measured->num_values()),
+      intervals_(problem.window),
+      nw_(static_cast<int>((problem.drift.array() > 0).count())),
+      stride_(nx_ + nw_),
+      instants_(std::size_t(intervals_) + 1, {0, Vector::Zero(problem.dae->num_inputs()), Vector::Zero(ny_), Vector::Zero(ny_)}),
+      prior_(Vector::Zero(nx_), identity(nx_)),
+      now_(prior_),
+      factor_(nx_),
+      whitening_(identity(nx_)),
+      variance_(Vector::Zero(nx_)),
+      own_(std::make_unique<Evaluation>(problem, nx_, ny_, intervals_ + 1)) {
+  for (int i = 0; i < nx_; ++i) {
+    if (problem.drift[i] > 0) drifting_.push_back(i);
+  }
+  reset();
+}
+
+void EstimationWindow::reset() {
+  for (Instant& instant : instants_) instant.dt = 0, instant.weights.setZero();
+  prior_.mean = problem_.mean.cwiseQuotient(scale());
+  prior_.covariance.setIdentity();
+  whiten();
+}
+
+void EstimationWindow::slide(ConstVectorRef x, double dt, ConstVectorRef commands, ConstVectorRef measurements) {
+  auto& evaluation = static_cast<Evaluation&>(*own_);
+  Linearised& first = evaluation.at[0];
+  linearise(0, x.head(nx_), evaluation, first);
+  learn(0, x.head(nx_), first, prior_);
+  move(0, x.head(nx_), first, prior_);
+  whiten();
+
+  std::ranges::rotate(instants_, instants_.begin() + 1);
+  Instant& last = instants_.back();
+  last.dt = dt;
+  last.commands = commands;
+  for (int i = 0; i < ny_; ++i) {
+    const bool is_measured = std::isfinite(measurements[i]);
+    last.measured[i] = is_measured ? measurements[i] : 0;
+    last.weights[i] = is_measured ? 1 / problem_.noise[i] : 0;
+  }
+}
+
+void EstimationWindow::shift(Vector& x, Vector& lambda) {
+  auto& evaluation = static_cast<Evaluation&>(*own_);
+  std::copy(x.begin() + stride_, x.end(), x.begin());
+  std::copy(lambda.begin() + rows_at(1), lambda.end(), lambda.begin() + rows_at(0));
+  lambda.tail(ny_ + nx_).setZero();
+  x.segment(state_at(intervals_) - nw_, nw_).setZero();
+  lead_on(intervals_ - 1, x, evaluation);
+}
+
+void EstimationWindow::start(Vector& x) {
+  start(x, static_cast<Evaluation&>(*own_));
+}
+
+void EstimationWindow::initial_point(VectorRef x) const {
+  const Workspace workspace = make_workspace();
+  start(x, static_cast<Evaluation&>(*workspace));
+}
+
+void EstimationWindow::start(VectorRef x, Evaluation& evaluation) const {
+  x.setZero();
+  x.head(nx_) = prior_.mean;
+  for (int k = 0; k < intervals_; ++k) lead_on(k, x, evaluation);
+}
+
+// xi_{k+1}, without drift
+void EstimationWindow::lead_on(int k, VectorRef x, Evaluation& evaluation) const {
+  linearise(k, x.segment(state_at(k), nx_), evaluation, evaluation.at[0]);
+  x.segment(state_at(k + 1), nx_) = evaluation.at[0].next;
+}
+
+// P = L L',  W = L^-1
+void EstimationWindow::whiten() {
+  factor_.compute(prior_.covariance);
+  whitening_.setIdentity();
+  factor_.matrixL().solveInPlace(whitening_);
+}
+
+double EstimationWindow::drift(int i, int k) const {
+  return problem_.drift[i] / scale()[i] * std::sqrt(instant(k + 1).dt);
+}
+
+// r = (h(s xi) - y) / noise,   next = phi(s xi) / s
+void EstimationWindow::linearise(int k, ConstVectorRef xi, Evaluation& at, Linearised& out) const {
+  const Instant& here = instant(k);
+  at.z.head(nx_) = scale().cwiseProduct(xi);
+  at.z.tail(at.z.size() - nx_) = here.commands;
+  problem_.measured->values(at.z, out.residual);
+  problem_.measured->jacobian(at.z, at.by_z);
+  out.residual = here.weights.cwiseProduct(out.residual - here.measured);
+  for (int c = 0; c < nx_; ++c) out.by_x.col(c) = here.weights.cwiseProduct(at.by_z.col(c)) * scale()[c];
+  if (k == intervals_) return;
+  at.transition.advance(at.z.head(nx_), instant(k + 1).commands, instant(k + 1).dt);
+  out.next = at.transition.state.cwiseQuotient(scale());
+  for (int c = 0; c < nx_; ++c) out.a.col(c) = at.transition.derivative.col(c).cwiseQuotient(scale()) * scale()[c];
+}
+
+// r + C (xi - x) = e
+void EstimationWindow::learn(int k, ConstVectorRef x, const Linearised& at, GaussianBelief& belief) const {
+  for (int i = 0; i < ny_; ++i) {
+    if (instant(k).weights[i] == 0) continue;
+    belief.learn(at.by_x.row(i).transpose(), at.by_x.row(i).dot(x) - at.residual[i]);
+  }
+}
+
+void EstimationWindow::move(int k, ConstVectorRef x, const Linearised& at, GaussianBelief& belief) {
+  variance_.setZero();
+  for (const int i : drifting_) variance_[i] = drift(i, k) * drift(i, k);
+  belief.move(at.a, x, at.next, variance_);
+}
+
+const GaussianBelief& EstimationWindow::belief(ConstVectorRef x) {
+  prepare(x, own_);
+  const auto& at = static_cast<const Evaluation&>(*own_).at;
+  now_ = prior_;
+  for (int k = 0; k <= intervals_; ++k) {
+    const ConstVectorRef here = x.segment(state_at(k), nx_);
+    learn(k, here, at[std::size_t(k)], now_);
+    if (k < intervals_) move(k, here, at[std::size_t(k)], now_);
+  }
+  return now_;
+}
+
+Stages EstimationWindow::stages() const {
+  Stages stages;
+  for (int k = 0; k <= intervals_; ++k) {
+    const bool last = k == intervals_;
+    stages.stages.push_back({{state_at(k), last ? num_variables() : state_at(k + 1)}, {k == 0 ? 0 : rows_at(k), last ? num_constraints() : rows_at(k + 1)}});
+  }
+  return stages;
+}
+
+// xi_k: the prior's W, or the -1 of the interval before; what is measured; A.   w_k: G
+SparsePattern EstimationWindow::jacobian_pattern() const {
+  SparsePattern pattern{num_constraints(), num_variables(), {0}, {}};
+  const auto rows = [&](int begin, int count) {
+    for (int r = 0; r < count; ++r) pattern.inner.push_back(begin + r);
+  };
+  for (int k = 0; k <= intervals_; ++k) {
+    for (int c = 0; c < nx_; ++c) {
+      if (k == 0) rows(0, nx_);
+      else rows(rows_at(k) - nx_ + c, 1);
+      rows(rows_at(k), ny_ + (k < intervals_ ? nx_ : 0));
+      pattern.outer.push_back(pattern.nonzeros());
+    }
+    for (int j = 0; j < nw_ && k < intervals_; ++j) {
+      rows(rows_at(k) + ny_ + drifting_[std::size_t(j)], 1);
+      pattern.outer.push_back(pattern.nonzeros());
+    }
+  }
+  return pattern;
+}
+
+SparsePattern EstimationWindow::hessian_pattern() const {
+  std::vector<std::pair<int, int>> entries;
+  for (int k = 0; k < intervals_; ++k) {
+    for (int j = state_at(k) + nx_; j < state_at(k + 1); ++j) entries.emplace_back(j, j);
+  }
+  return SparsePattern::from_entries(num_variables(), num_variables(), std::move(entries));
+}
+
+void EstimationWindow::bounds(Bounds& bounds) const {
+  bounds.c_lower.setZero();
+  bounds.c_upper.setZero();
+  bounds.compliance.head(nx_).setOnes();
+  for (int k = 0; k <= intervals_; ++k) bounds.compliance.segment(rows_at(k), ny_).setOnes();
+}
+
+Nlp::Workspace EstimationWindow::make_workspace() const {
+  return std::make_unique<Evaluation>(problem_, nx_, ny_, intervals_ + 1);
+}
+
+void EstimationWindow::prepare(ConstVectorRef x, Workspace& workspace) const {
+  auto& evaluation = static_cast<Evaluation&>(*workspace);
+  for (int k = 0; k <= intervals_; ++k) linearise(k, x.segment(state_at(k), nx_), evaluation, evaluation.at[std::size_t(k)]);
+}
+
+double EstimationWindow::objective(ConstVectorRef x, Workspace&) const {
+  double sum = 0;
+  for (int k = 0; k < intervals_; ++k) sum += x.segment(state_at(k) + nx_, nw_).squaredNorm() / 2;
+  return sum;
+}
+
+void EstimationWindow::gradient(ConstVectorRef x, Workspace&, VectorRef gradient) const {
+  gradient.setZero();
+  for (int k = 0; k < intervals_; ++k) gradient.segment(state_at(k) + nx_, nw_) = x.segment(state_at(k) + nx_, nw_);
+}
+
+void EstimationWindow::constraints(ConstVectorRef x, Workspace& workspace, VectorRef values) const {
+  const auto& at = static_cast<const Evaluation&>(*workspace).at;
+  values.head(nx_).noalias() = whitening_ * (x.head(nx_) - prior_.mean);
+  for (int k = 0; k <= intervals_; ++k) {
+    const Linearised& here = at[std::size_t(k)];
+    values.segment(rows_at(k), ny_) = here.residual;
+    if (k == intervals_) break;
+    auto dynamics = values.segment(rows_at(k) + ny_, nx_);
+    dynamics = here.next - x.segment(state_at(k + 1), nx_);
+    for (int j = 0; j < nw_; ++j) {
+      const int i = drifting_[std::size_t(j)];
+      dynamics[i] += drift(i, k) * x[state_at(k) + nx_ + j];
+    }
+  }
+}
+
+void EstimationWindow::jacobian(ConstVectorRef, Workspace& workspace, std::span<double> values) const {
+  const auto& at = static_cast<const Evaluation&>(*workspace).at;
+  double* out = values.data();
+  for (int k = 0; k <= intervals_; ++k) {
+    const Linearised& here = at[std::size_t(k)];
+    for (int c = 0; c < nx_; ++c) {
+      if (k == 0) out = std::copy_n(whitening_.data() + c * nx_, nx_, out);
+      else *out++ = -1;
+      out = std::copy_n(here.by_x.data() + c * ny_, ny_, out);
+      if (k < intervals_) out = std::copy_n(here.a.data() + c * nx_, nx_, out);
+    }
+    for (int j = 0; j < nw_ && k < intervals_; ++j) *out++ = drift(drifting_[std::size_t(j)], k);
+  }
+}
+
+void EstimationWindow::hessian(ConstVectorRef, double sigma, ConstVectorRef, Workspace&, std::span<double> values) const {
+  std::ranges::fill(values, sigma);
+}
+
+std::string EstimationWindow::variable_name(int i) const {
+  const int k = std::min(i / stride_, intervals_), c = i - k * stride_;
+  const bool is_state = c < nx_;
+  const int state = is_state ? c : drifting_[std::size_t(c - nx_)];
+  return (is_state ? "" : "drift of ") + problem_.dae->state_name(state) + "[" + std::to_string(k) + "]";
+}
+
+std::string EstimationWindow::constraint_name(int j) const {
+  if (j < nx_) return "prior of " + problem_.dae->state_name(j);
+  const int k = (j - nx_) / (ny_ + nx_), r = (j - nx_) % (ny_ + nx_);
+  return (r < ny_ ? "measured " + problem_.measured->value_name(r) : problem_.dae->state_name(r - ny_)) + "[" + std::to_string(k) + "]";
+}
+
+}  // namespace tenon
