@@ -8,11 +8,13 @@
 #include <optional>
 #include <stdexcept>
 
+#include "tenon/apps/default_solver.hpp"
 #include "tenon/apps/json.hpp"
 #include "tenon/apps/make_report.hpp"
 #include "tenon/apps/table.hpp"
 #include "tenon/apps/verb.hpp"
 #include "tenon/core/csv.hpp"
+#include "tenon/mpc/task_controllers.hpp"
 #include "tenon/problems/tasks.hpp"
 
 namespace tenon {
@@ -20,6 +22,7 @@ namespace tenon {
 namespace {
 
 constexpr double kObserved = 0.7;  // of the prior's standard deviation: where more than this is left, little was learnt
+constexpr double kTied = 0.99;     // of a correlation: beyond it two estimates are known together, not apart
 
 std::vector<std::string> names_of(int count, const auto& name) {
   std::vector<std::string> names;
@@ -50,23 +53,55 @@ class Cells {
   Vector values_;
 };
 
-Vector deviations(const Estimator& estimator) {
+Eigen::MatrixXd covariance_of(const Estimator& estimator) {
   Eigen::MatrixXd covariance(estimator.num_estimates(), estimator.num_estimates());
   estimator.covariance(covariance);
-  return covariance.diagonal().cwiseSqrt();
+  return covariance;
+}
+
+Vector deviations(const Estimator& estimator) {
+  return covariance_of(estimator).diagonal().cwiseSqrt();
 }
 
 struct Belief {
   std::string name;
   double mean, deviation, prior_deviation;
+  std::string companion = {};  // what its error is tied to most
+  double correlation = 0;      // with that
 
   bool is_observed() const { return deviation <= kObserved * prior_deviation; }
+  bool is_tied() const { return std::abs(correlation) >= kTied; }
+  std::string remark() const {
+    const std::string tie = is_tied() ? fmt::format("better known together with {} (correlation {:.3f})", companion, correlation) : "";
+    if (is_observed()) return tie;
+    return "not observed: this record says little about it" + (tie.empty() ? "" : "; " + tie);
+  }
 };
+
+std::vector<Belief> beliefs_of(const Estimator& estimator, const Vector& prior) {
+  Vector mean(estimator.num_estimates());
+  estimator.mean(mean);
+  const Eigen::MatrixXd covariance = covariance_of(estimator);
+  const Vector deviation = covariance.diagonal().cwiseSqrt();
+  std::vector<Belief> beliefs;
+  for (int i = 0; i < mean.size(); ++i) {
+    beliefs.push_back({estimator.estimate_name(i), mean[i], deviation[i], prior[i]});
+    for (int j = 0; j < mean.size(); ++j) {
+      const double correlation = covariance(std::max(i, j), std::min(i, j)) / (deviation[i] * deviation[j]);
+      if (j == i || !(std::abs(correlation) > std::abs(beliefs.back().correlation))) continue;
+      beliefs.back().companion = estimator.estimate_name(j);
+      beliefs.back().correlation = correlation;
+    }
+  }
+  return beliefs;
+}
 
 Json json_of(const std::vector<Belief>& beliefs, const std::string& scene, int rows) {
   Json estimates = Json::array(), unobserved = Json::array();
   for (const Belief& b : beliefs) {
-    estimates.push(Json::object().set("name", b.name).set("mean", b.mean).set("sd", b.deviation).set("prior_sd", b.prior_deviation));
+    Json estimate = Json::object().set("name", b.name).set("mean", b.mean).set("sd", b.deviation).set("prior_sd", b.prior_deviation);
+    if (b.is_tied()) estimate.set("tied_to", b.companion).set("correlation", b.correlation);
+    estimates.push(estimate);
     if (!b.is_observed()) unobserved.push(b.name);
   }
   return Json::object().set("schema", 1).set("scene", scene).set("rows", rows).set("estimates", estimates).set("not_observed", unobserved);
@@ -76,7 +111,7 @@ std::string text_of(const std::vector<Belief>& beliefs, const std::string& scene
   Table table({"estimate", "mean", "sd", "sd before", ""});
   for (const Belief& b : beliefs) {
     table.add({b.name, fmt::format("{:.6g}", b.mean), fmt::format("{:.3g}", b.deviation), fmt::format("{:.3g}", b.prior_deviation),
-               b.is_observed() ? "" : "not observed: this record says little about it"});
+               b.remark()});
   }
   return fmt::format("{}: {} rows\n{}", scene, rows, table.text());
 }
@@ -86,9 +121,12 @@ std::string text_of(const std::vector<Belief>& beliefs, const std::string& scene
 int run_estimate(const Arguments& arguments) {
   const std::string& scene = arguments.names.front();
   if (arguments.measurements.empty()) throw std::invalid_argument("estimate: no record (expected --measurements FILE.csv)");
-  const ControlTask task = make_task(scene, arguments.set);
-  if (!task.estimator) throw std::invalid_argument(scene + ": has nothing to estimate, its measurements say it all");
-  Estimator& estimator = *task.estimator;
+  ControlTask task = make_task(scene, arguments.set);
+  const std::string solver = arguments.solver.value_or(default_solver());
+  const std::unique_ptr<Estimator> taken =
+      take_estimator(task, [&](const Nlp& problem, const Options& options) { return make_solver(solver, problem, options); });
+  if (!taken) throw std::invalid_argument(scene + ": has nothing to estimate, its measurements say it all");
+  Estimator& estimator = *taken;
   const std::vector<std::string> measured = names_of(task.plant->num_measurements(), [&](int i) { return task.plant->measurement_name(i); });
   const std::vector<std::string> commanded = names_of(task.plant->num_commands(), [&](int i) { return task.plant->command_name(i); });
   const std::vector<std::string> estimated = names_of(estimator.num_estimates(), [&](int i) { return estimator.estimate_name(i); });
@@ -126,10 +164,7 @@ int run_estimate(const Arguments& arguments) {
   if (csv) csv->finish();
   make_report(arguments, {output});
 
-  estimator.mean(mean);
-  const Vector deviation = deviations(estimator);
-  std::vector<Belief> beliefs;
-  for (int i = 0; i < mean.size(); ++i) beliefs.push_back({estimated[static_cast<std::size_t>(i)], mean[i], deviation[i], prior[i]});
+  const std::vector<Belief> beliefs = beliefs_of(estimator, prior);
   if (arguments.json)
     print(json_of(beliefs, scene, record.rows()));
   else if (!arguments.quiet)

@@ -11,6 +11,7 @@ EstimationProblem::EstimationProblem(std::shared_ptr<const Dae> dae_, std::share
       noise(Vector::Zero(measured->num_values())),
       mean(Vector::Zero(dae->num_states())),
       deviation(mean),
+      is_positive(static_cast<std::size_t>(mean.size()), false),
       drift(mean) {
   solve.warm_start = true;
 }
@@ -29,6 +30,11 @@ void validate(const EstimationProblem& problem) {
   require(arguments == nz, "what is measured takes " + std::to_string(arguments) + " arguments (expected " + std::to_string(nz) + ", x and u)");
   sized(problem.noise, problem.measured->num_values(), "noise");
   sized(problem.mean, nx, "mean"), sized(problem.deviation, nx, "deviation"), sized(problem.drift, nx, "drift");
+  require(static_cast<int>(problem.is_positive.size()) == nx, "what is positive has the wrong length (expected " + std::to_string(nx) + ")");
+  for (int i = 0; i < nx; ++i) {
+    require(!problem.is_positive[static_cast<std::size_t>(i)] || problem.mean[i] > 0,
+            "the mean of " + problem.dae->state_name(i) + " is " + std::to_string(problem.mean[i]) + " (expected more than 0, as it is positive)");
+  }
   require((problem.noise.array() > 0).all(), "a noise that is not positive (expected more than 0)");
   require((problem.deviation.array() > 0).all(), "a deviation that is not positive (expected more than 0)");
   require((problem.drift.array() >= 0).all(), "a negative drift (expected 0 or more)");

@@ -2,12 +2,14 @@
 //
 //     x' = f(x, u) + drift,      y_k = h(x(t_k), u) + noise,      x(t_0) = mean +- deviation          u: what was commanded, held
 //
-// A parameter is a state with x' = 0. All noise is Gaussian and independent, entry by entry. It knows neither transcription nor solver:
-// mpc makes a moving horizon of it. To optimal control it is what core/ocp.hpp is, looking back.
+// A parameter is a state with x' = 0. All noise is Gaussian and independent, entry by entry; of what is positive (a mass, a friction) the
+// logarithm is, since that is known in proportion. It knows neither transcription nor solver: mpc makes a moving horizon of it. To optimal
+// control it is what core/ocp.hpp is, looking back.
 #pragma once
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "tenon/core/dae.hpp"
 #include "tenon/core/options.hpp"
@@ -16,7 +18,7 @@
 namespace tenon {
 
 struct EstimationProblem {
-  /// Of these sizes, nothing drifts; what was known before is for the caller to say.
+  /// Of these sizes, nothing drifts, nothing is positive; what was known before is for the caller to say.
   EstimationProblem(std::shared_ptr<const Dae> dae, std::shared_ptr<const SmoothFunction> measured);
 
   std::string name = "estimation";
@@ -25,7 +27,8 @@ struct EstimationProblem {
   std::shared_ptr<const SmoothFunction> measured;  // h(x, u)
   Vector noise;                                    // of h: standard deviations, > 0
   Vector mean, deviation;                          // of x before anything was measured; deviation > 0
-  Vector drift;                                    // of x: the standard deviation of what comes to it in 1 s, >= 0
+  std::vector<bool> is_positive;                   // of x: `mean` is then its median, deviation/mean the deviation of its logarithm
+  Vector drift;                                    // of x: the standard deviation of what comes to it in 1 s, >= 0; of what is positive: at its mean
 
   int window = 10;             // intervals between measurements that are looked back over, >= 1
   double longest_step = 5e-3;  // s, of the integration of f

@@ -11,11 +11,12 @@ struct EstimationWindow::Evaluation final : Nlp::Scratch {
   Evaluation(const EstimationProblem& problem, int nx, int ny, int instants)
       : transition(*problem.dae, problem.mode, problem.longest_step),
         z(problem.measured->num_arguments()),
+        slope(nx),
         by_z(ny, z.size()),
         at(std::size_t(instants), {Vector::Zero(ny), Vector::Zero(nx), Eigen::MatrixXd::Zero(ny, nx), Eigen::MatrixXd::Zero(nx, nx)}) {}
 
   StateTransition transition;
-  Vector z;              // (x, u)
+  Vector z, slope;       // (x, u); dx/dxi
   Eigen::MatrixXd by_z;  // of h
   std::vector<Linearised> at;
 };
@@ -35,6 +36,7 @@ EstimationWindow::EstimationWindow(const EstimationProblem& problem)
       intervals_(problem.window),
       nw_(static_cast<int>((problem.drift.array() > 0).count())),
       stride_(nx_ + nw_),
+      scale_(problem.deviation),
       instants_(std::size_t(intervals_) + 1, {0, Vector::Zero(problem.dae->num_inputs()), Vector::Zero(ny_), Vector::Zero(ny_)}),
       prior_(Vector::Zero(nx_), identity(nx_)),
       now_(prior_),
@@ -44,13 +46,14 @@ EstimationWindow::EstimationWindow(const EstimationProblem& problem)
       own_(std::make_unique<Evaluation>(problem, nx_, ny_, intervals_ + 1)) {
   for (int i = 0; i < nx_; ++i) {
     if (problem.drift[i] > 0) drifting_.push_back(i);
+    if (problem.is_positive[std::size_t(i)]) scale_[i] /= problem.mean[i];
   }
   reset();
 }
 
 void EstimationWindow::reset() {
   for (Instant& instant : instants_) instant.dt = 0, instant.weights.setZero();
-  prior_.mean = problem_.mean.cwiseQuotient(scale());
+  for (int i = 0; i < nx_; ++i) prior_.mean[i] = (problem_.is_positive[std::size_t(i)] ? std::log(problem_.mean[i]) : problem_.mean[i]) / scale_[i];
   prior_.covariance.setIdentity();
   whiten();
 }
@@ -112,22 +115,35 @@ void EstimationWindow::whiten() {
 }
 
 double EstimationWindow::drift(int i, int k) const {
-  return problem_.drift[i] / scale()[i] * std::sqrt(instant(k + 1).dt);
+  return problem_.drift[i] / problem_.deviation[i] * std::sqrt(instant(k + 1).dt);
 }
 
-// r = (h(s xi) - y) / noise,   next = phi(s xi) / s
+void EstimationWindow::to_state(ConstVectorRef xi, VectorRef x, VectorRef slope) const {
+  for (int i = 0; i < nx_; ++i) {
+    const bool is_positive = problem_.is_positive[std::size_t(i)];
+    x[i] = is_positive ? std::exp(scale_[i] * xi[i]) : scale_[i] * xi[i];
+    slope[i] = is_positive ? scale_[i] * x[i] : scale_[i];
+  }
+}
+
+// r = (h(x) - y) / noise,   next = phi: where x leads
 void EstimationWindow::linearise(int k, ConstVectorRef xi, Evaluation& at, Linearised& out) const {
   const Instant& here = instant(k);
-  at.z.head(nx_) = scale().cwiseProduct(xi);
+  to_state(xi, at.z.head(nx_), at.slope);
   at.z.tail(at.z.size() - nx_) = here.commands;
   problem_.measured->values(at.z, out.residual);
   problem_.measured->jacobian(at.z, at.by_z);
   out.residual = here.weights.cwiseProduct(out.residual - here.measured);
-  for (int c = 0; c < nx_; ++c) out.by_x.col(c) = here.weights.cwiseProduct(at.by_z.col(c)) * scale()[c];
+  for (int c = 0; c < nx_; ++c) out.by_x.col(c) = here.weights.cwiseProduct(at.by_z.col(c)) * at.slope[c];
   if (k == intervals_) return;
   at.transition.advance(at.z.head(nx_), instant(k + 1).commands, instant(k + 1).dt);
-  out.next = at.transition.state.cwiseQuotient(scale());
-  for (int c = 0; c < nx_; ++c) out.a.col(c) = at.transition.derivative.col(c).cwiseQuotient(scale()) * scale()[c];
+  out.a.noalias() = at.transition.derivative * at.slope.asDiagonal();
+  for (int i = 0; i < nx_; ++i) {
+    const double next = at.transition.state[i];
+    const bool is_positive = problem_.is_positive[std::size_t(i)];
+    out.next[i] = (is_positive ? std::log(next) : next) / scale_[i];
+    out.a.row(i) /= is_positive ? scale_[i] * next : scale_[i];
+  }
 }
 
 // r + C (xi - x) = e

@@ -1,8 +1,9 @@
 // The last N intervals of an estimation problem as a nonlinear program whose stages are those intervals.
 //
-//     min   1/2 |W (xi_0 - m)|^2 + 1/2 sum |r_k(x_k)|^2 + 1/2 sum |w_k|^2        s.t.   phi_k(x_k) / s + G_k w_k - xi_{k+1} = 0
+//     min   1/2 |W (xi_0 - m)|^2 + 1/2 sum |r_k(x_k)|^2 + 1/2 sum |w_k|^2        s.t.   phi_k(xi_k) + G_k w_k - xi_{k+1} = 0
 //
-//     x = s xi:  in units of the prior's deviations s        r_k = (h(x_k) - y_k) / noise        G_k w_k: drift over interval k
+//     xi: x, or the logarithm of what is positive, in units s of the prior's deviations
+//     r_k = (h(x_k) - y_k) / noise                    phi_k: where x leads, as xi                    G_k w_k: drift over interval k
 //
 // The squares of prior and measurements are rows that give way (compliance 1), so that their multipliers are the residuals. What was not
 // measured has weight 0. Variables are ordered xi_0 w_0 xi_1 ... xi_N, rows: prior, then r_k and the dynamics by interval. Hessian: Gauss
@@ -27,7 +28,8 @@ class EstimationWindow final : public Nlp {
   int intervals() const { return intervals_; }
   /// Where xi_k stands among the variables.
   int state_at(int k) const { return k * stride_; }
-  const Vector& scale() const { return problem_.deviation; }
+  /// x of xi, and dx/dxi, entry by entry.
+  void to_state(ConstVectorRef xi, VectorRef x, VectorRef slope) const;
 
   void reset();
   /// `commands` held for `dt` s, then these measurements (not finite: not measured) at the last instant of the window; the first leaves it,
@@ -67,7 +69,7 @@ class EstimationWindow final : public Nlp {
     double dt = 0;  // s
     Vector commands, measured, weights;
   };
-  /// r_k and phi_k / s with their derivatives by xi_k.
+  /// r_k and phi_k with their derivatives by xi_k.
   struct Linearised {
     Vector residual, next;
     Eigen::MatrixXd by_x, a;
@@ -87,6 +89,7 @@ class EstimationWindow final : public Nlp {
   const EstimationProblem& problem_;
   int nx_, ny_, intervals_, nw_, stride_;
   std::vector<int> drifting_;  // states
+  Vector scale_;               // s
   std::vector<Instant> instants_;
   GaussianBelief prior_, now_;
   Eigen::LLT<Eigen::MatrixXd> factor_;

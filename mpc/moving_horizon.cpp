@@ -19,6 +19,7 @@ MovingHorizon::MovingHorizon(EstimationProblem problem, const SolverFactory& mak
       solver_(make_solver(window_, problem_.solve)),
       point_(window_.num_variables(), window_.num_constraints()),
       mean_(problem_.mean),
+      slope_(problem_.mean),
       covariance_(Eigen::MatrixXd::Zero(mean_.size(), mean_.size())) {
   reset();
 }
@@ -48,9 +49,8 @@ void MovingHorizon::update(double t, ConstVectorRef measurements, ConstVectorRef
   if (!point_.x.allFinite()) start_afresh();
 
   const GaussianBelief& belief = window_.belief(point_.x);
-  const Vector& scale = problem_.deviation;
-  mean_ = scale.cwiseProduct(point_.x.tail(scale.size()));
-  for (Eigen::Index c = 0; c < scale.size(); ++c) covariance_.col(c) = scale[c] * scale.cwiseProduct(belief.covariance.col(c));
+  window_.to_state(point_.x.tail(mean_.size()), mean_, slope_);
+  for (Eigen::Index c = 0; c < mean_.size(); ++c) covariance_.col(c) = slope_[c] * slope_.cwiseProduct(belief.covariance.col(c));
 }
 
 }  // namespace tenon

@@ -41,7 +41,7 @@ class MovingHorizon final : public Estimator {
   EstimationWindow window_;
   std::unique_ptr<Solver> solver_;
   Point point_;
-  Vector mean_, start_;
+  Vector mean_, slope_;
   Eigen::MatrixXd covariance_;
   double last_ = 0;
   bool has_started_ = false;

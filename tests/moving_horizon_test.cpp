@@ -162,5 +162,139 @@ TEST(MovingHorizon, ItsCovarianceIsThatOfTheWindowsSolution) {
   });
 }
 
+/// (x - mean)' P^-1 (x - mean), what is positive by its logarithm.
+double normalised_error(const EstimationProblem& problem, const Estimator& estimator, const Vector& x) {
+  const Vector mean = mean_of(estimator);
+  Vector error = x - mean;
+  for (int i = 0; i < error.size(); ++i) {
+    if (problem.is_positive[std::size_t(i)]) error[i] = mean[i] * std::log(x[i] / mean[i]);
+  }
+  const Eigen::MatrixXd covariance = covariance_of(estimator).selfadjointView<Eigen::Lower>();
+  return error.dot(covariance.llt().solve(error));
+}
+
+// Of 100 worlds drawn from the prior: a mean of chi squared with 4 degrees of freedom has the deviation sqrt(8/100) = 0.28.
+TEST(MovingHorizon, ItsErrorsAreAsLargeAsItSays) {
+  const EstimationProblem problem = pendulum();
+  MovingHorizon horizon(problem, &newton);
+  double sum = 0;
+  int outside = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    World world(problem, seed);
+    run(horizon, world, 100, 3, [](int) {});
+    const double error = normalised_error(problem, horizon, world.x);
+    sum += error;
+    outside += error > 13.28 ? 1 : 0;  // 1 % of chi squared with 4 degrees of freedom
+    EXPECT_LT(covariance_of(horizon)(2, 2), 0.3 * 0.3) << "world " << seed << ": the stiffness was 2 before";
+    EXPECT_LT(covariance_of(horizon)(3, 3), 0.1 * 0.1) << "world " << seed << ": the friction was 0.2 before";
+  }
+  EXPECT_NEAR(sum / 100, 4, 3 * 0.28);
+  EXPECT_LE(outside, 5);
+}
+
+TEST(MovingHorizon, WhatNothingExcitesKeepsItsPrior) {
+  EstimationProblem problem = pendulum();
+  problem.deviation[0] = problem.deviation[1] = 1e-6;  // it hangs at rest
+  problem.drift.setZero();
+  MovingHorizon horizon(problem, &newton);
+  for (int k = 0; k < 30; ++k) horizon.update(k * kPeriod, Vector::Zero(1), Vector::Zero(1));
+  EXPECT_NEAR(mean_of(horizon)[2], problem.mean[2], 1e-9);
+  EXPECT_NEAR(mean_of(horizon)[3], problem.mean[3], 1e-9);
+  EXPECT_NEAR(std::sqrt(covariance_of(horizon)(2, 2)), problem.deviation[2], 1e-6);
+  EXPECT_NEAR(std::sqrt(covariance_of(horizon)(3, 3)), problem.deviation[3], 1e-6);
+}
+
+// The same window, one of each kind of linear algebra and another method's point of view.
+TEST(MovingHorizon, EveryBackEndFindsTheSameState) {
+  EstimationProblem problem = pendulum();
+  problem.is_positive[2] = problem.is_positive[3] = true;
+  MovingHorizon horizon(problem, &newton);
+  World world(problem, 5);
+  world.x = problem.mean + Vector(Eigen::Vector4d(0.05, 0.1, 1.5, 0.1));
+  run(horizon, world, 25, 3, [](int) {});
+  for (const SolverDescription& solver : list_solvers()) {
+    if (!solver.available || solver.name.starts_with("nlopt")) continue;
+    Point point(horizon.window().num_variables(), horizon.window().num_constraints());
+    horizon.window().initial_point(point.x);
+    const Result result = make_solver(solver.name, horizon.window())->solve(point);
+    EXPECT_TRUE(succeeded(result.status)) << solver.name;
+    EXPECT_LE((point.x - horizon.solution().x).lpNorm<Eigen::Infinity>(), 1e-5) << solver.name;
+  }
+}
+
+TEST(MovingHorizon, TheWindowsDerivativesAreExact) {
+  EstimationProblem problem = pendulum(4);
+  problem.is_positive[2] = true;
+  MovingHorizon horizon(problem, &newton);
+  World world(problem, 2);
+  run(horizon, world, 7, 3, [](int) {});
+  const EstimationWindow& window = horizon.window();
+  const Vector x = horizon.solution().x + 0.1 * Vector::Ones(window.num_variables());
+  const DerivativeReport report = check_derivatives(window, x, 1, Vector::Zero(window.num_constraints()), 1e-6);
+  EXPECT_TRUE(report.passed(1e-6)) << report.gradient_error << " " << report.jacobian_error << " " << report.hessian_error;
+  EXPECT_EQ(window.variable_name(0), "angle[0]");
+  EXPECT_EQ(window.variable_name(4), "drift of rate[0]");
+  EXPECT_EQ(window.constraint_name(3), "prior of friction");
+  EXPECT_EQ(window.constraint_name(4), "measured angle[0]");
+  EXPECT_EQ(window.constraint_name(5), "angle[0]");
+}
+
+TEST(MovingHorizon, AnUpdateAllocatesNothing) {
+  MovingHorizon horizon(pendulum(), &newton);
+  World world(pendulum(), 4);
+  horizon.reset();
+  Vector held = Vector::Zero(1), y(1);
+  long count = 0;
+  for (int k = 0; k < 40; ++k) {
+    if (k > 0) world.advance(held);
+    y = world.measured(held);
+    if (k % 7 == 3) y[0] = std::numeric_limits<double>::quiet_NaN();
+    const AllocationCounter counter;
+    horizon.update(k * kPeriod, y, held);
+    count += counter.count();
+    held = push(k, 3);
+  }
+  EXPECT_EQ(count, 0);
+}
+
+TEST(MovingHorizon, IsTheSameBitForBitEveryTime) {
+  const EstimationProblem problem = pendulum();
+  MovingHorizon one(problem, &newton), two(problem, &newton);
+  World first(problem, 9), second(problem, 9), other(problem, 10);
+  run(two, other, 30, 3, [](int) {});  // what was before is forgotten
+  run(one, first, 30, 3, [](int) {});
+  run(two, second, 30, 3, [](int) {});
+  EXPECT_EQ(mean_of(one), mean_of(two));
+  EXPECT_EQ(covariance_of(one), covariance_of(two));
+}
+
+// An interval without a measurement is an interval of prediction.
+TEST(MovingHorizon, WhatIsNotFiniteWasNotMeasured) {
+  const EstimationProblem problem = cart(5);
+  MovingHorizon seeing(problem, &newton), blind(problem, &newton);
+  const Vector none = Vector::Constant(1, std::numeric_limits<double>::quiet_NaN()), u = Vector::Constant(1, 0.5), y = Vector::Constant(1, 0.2);
+  for (MovingHorizon* horizon : {&seeing, &blind}) horizon->update(0, y, Vector::Zero(1));
+  blind.update(kPeriod, none, u);
+  blind.update(2 * kPeriod, y, u);
+  seeing.update(2 * kPeriod, y, u);
+  Eigen::MatrixXd difference = covariance_of(seeing) - covariance_of(blind);
+  EXPECT_LE((mean_of(seeing) - mean_of(blind)).norm(), 1e-6);
+  EXPECT_LE(difference.norm(), 1e-4) << "but for the drift, which one walks in two steps";
+  EXPECT_GT(covariance_of(blind)(1, 1), 0);
+}
+
+TEST(MovingHorizon, RefusesProblemsThatMakeNoSense) {
+  const auto refused = [](auto&& change) {
+    EstimationProblem problem = pendulum();
+    change(problem);
+    return message_of<std::invalid_argument>([&] { MovingHorizon(problem, &newton); });
+  };
+  EXPECT_EQ(refused([](auto& p) { p.noise.setZero(); }), "pendulum: a noise that is not positive (expected more than 0)");
+  EXPECT_EQ(refused([](auto& p) { p.mean.resize(3); }), "pendulum: mean has 3 entries (expected 4 finite ones)");
+  EXPECT_EQ(refused([](auto& p) { p.window = 0; }), "pendulum: a window of 0 intervals (expected at least 1)");
+  EXPECT_EQ(refused([](auto& p) { p.is_positive[0] = true; }),
+            "pendulum: the mean of angle is 0.000000 (expected more than 0, as it is positive)");
+}
+
 }  // namespace
 }  // namespace tenon
