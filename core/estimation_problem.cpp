@@ -14,6 +14,7 @@ EstimationProblem::EstimationProblem(std::shared_ptr<const Dae> dae_, std::share
       is_positive(static_cast<std::size_t>(mean.size()), false),
       drift(mean) {
   solve.warm_start = true;
+  solve.scaling = false;
 }
 
 void validate(const EstimationProblem& problem) {

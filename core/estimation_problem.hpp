@@ -32,7 +32,7 @@ struct EstimationProblem {
 
   int window = 10;             // intervals between measurements that are looked back over, >= 1
   double longest_step = 5e-3;  // s, of the integration of f
-  Options solve;               // how a window is solved; it starts from the one before
+  Options solve;               // how a window is solved: from the one before, and in deviations, which needs no scaling
 };
 
 /// Throws std::invalid_argument, naming the part, where sizes do not fit or a number makes no sense.

@@ -12,11 +12,13 @@ struct EstimationWindow::Evaluation final : Nlp::Scratch {
       : transition(*problem.dae, problem.mode, problem.longest_step),
         z(problem.measured->num_arguments()),
         slope(nx),
+        surprise(nx),
         by_z(ny, z.size()),
-        at(std::size_t(instants), {Vector::Zero(ny), Vector::Zero(nx), Eigen::MatrixXd::Zero(ny, nx), Eigen::MatrixXd::Zero(nx, nx)}) {}
+        at(std::size_t(instants), {Vector::Zero(ny), Vector::Zero(nx), Eigen::MatrixXd::Zero(nx, ny), Eigen::MatrixXd::Zero(nx, nx)}) {}
 
   StateTransition transition;
   Vector z, slope;       // (x, u); dx/dxi
+  Vector surprise;       // xi_0 - m
   Eigen::MatrixXd by_z;  // of h
   std::vector<Linearised> at;
 };
@@ -134,7 +136,9 @@ void EstimationWindow::linearise(int k, ConstVectorRef xi, Evaluation& at, Linea
   problem_.measured->values(at.z, out.residual);
   problem_.measured->jacobian(at.z, at.by_z);
   out.residual = here.weights.cwiseProduct(out.residual - here.measured);
-  for (int c = 0; c < nx_; ++c) out.by_x.col(c) = here.weights.cwiseProduct(at.by_z.col(c)) * at.slope[c];
+  for (int j = 0; j < ny_; ++j) {
+    for (int c = 0; c < nx_; ++c) out.gradients(c, j) = here.weights[j] * at.by_z(j, c) * at.slope[c];
+  }
   if (k == intervals_) return;
   at.transition.advance(at.z.head(nx_), instant(k + 1).commands, instant(k + 1).dt);
   out.a.noalias() = at.transition.derivative * at.slope.asDiagonal();
@@ -146,11 +150,11 @@ void EstimationWindow::linearise(int k, ConstVectorRef xi, Evaluation& at, Linea
   }
 }
 
-// r + C (xi - x) = e
+// r + g' (xi - x) = e
 void EstimationWindow::learn(int k, ConstVectorRef x, const Linearised& at, GaussianBelief& belief) const {
   for (int i = 0; i < ny_; ++i) {
     if (instant(k).weights[i] == 0) continue;
-    belief.learn(at.by_x.row(i).transpose(), at.by_x.row(i).dot(x) - at.residual[i]);
+    belief.learn(at.gradients.col(i), at.gradients.col(i).dot(x) - at.residual[i]);
   }
 }
 
@@ -238,10 +242,11 @@ void EstimationWindow::gradient(ConstVectorRef x, Workspace&, VectorRef gradient
 }
 
 void EstimationWindow::constraints(ConstVectorRef x, Workspace& workspace, VectorRef values) const {
-  const auto& at = static_cast<const Evaluation&>(*workspace).at;
-  values.head(nx_).noalias() = whitening_ * (x.head(nx_) - prior_.mean);
+  auto& evaluation = static_cast<Evaluation&>(*workspace);
+  evaluation.surprise = x.head(nx_) - prior_.mean;
+  values.head(nx_).noalias() = whitening_ * evaluation.surprise;
   for (int k = 0; k <= intervals_; ++k) {
-    const Linearised& here = at[std::size_t(k)];
+    const Linearised& here = evaluation.at[std::size_t(k)];
     values.segment(rows_at(k), ny_) = here.residual;
     if (k == intervals_) break;
     auto dynamics = values.segment(rows_at(k) + ny_, nx_);
@@ -261,7 +266,7 @@ void EstimationWindow::jacobian(ConstVectorRef, Workspace& workspace, std::span<
     for (int c = 0; c < nx_; ++c) {
       if (k == 0) out = std::copy_n(whitening_.data() + c * nx_, nx_, out);
       else *out++ = -1;
-      out = std::copy_n(here.by_x.data() + c * ny_, ny_, out);
+      for (int j = 0; j < ny_; ++j) *out++ = here.gradients(c, j);
       if (k < intervals_) out = std::copy_n(here.a.data() + c * nx_, nx_, out);
     }
     for (int j = 0; j < nw_ && k < intervals_; ++j) *out++ = drift(drifting_[std::size_t(j)], k);

@@ -69,10 +69,10 @@ class EstimationWindow final : public Nlp {
     double dt = 0;  // s
     Vector commands, measured, weights;
   };
-  /// r_k and phi_k with their derivatives by xi_k.
+  /// r_k and phi_k with their derivatives by xi_k: the gradient of each residual as a column, and A.
   struct Linearised {
     Vector residual, next;
-    Eigen::MatrixXd by_x, a;
+    Eigen::MatrixXd gradients, a;
   };
   struct Evaluation;
 

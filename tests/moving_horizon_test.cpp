@@ -278,22 +278,22 @@ TEST(MovingHorizon, WhatIsNotFiniteWasNotMeasured) {
   blind.update(2 * kPeriod, y, u);
   seeing.update(2 * kPeriod, y, u);
   Eigen::MatrixXd difference = covariance_of(seeing) - covariance_of(blind);
-  EXPECT_LE((mean_of(seeing) - mean_of(blind)).norm(), 1e-6);
+  EXPECT_LE((mean_of(seeing) - mean_of(blind)).norm(), 1e-5);
   EXPECT_LE(difference.norm(), 1e-4) << "but for the drift, which one walks in two steps";
   EXPECT_GT(covariance_of(blind)(1, 1), 0);
 }
 
 TEST(MovingHorizon, RefusesProblemsThatMakeNoSense) {
-  const auto refused = [](auto&& change) {
+  const auto make = [](auto&& change) {
     EstimationProblem problem = pendulum();
     change(problem);
-    return message_of<std::invalid_argument>([&] { MovingHorizon(problem, &newton); });
+    MovingHorizon(problem, &newton);
   };
-  EXPECT_EQ(refused([](auto& p) { p.noise.setZero(); }), "pendulum: a noise that is not positive (expected more than 0)");
-  EXPECT_EQ(refused([](auto& p) { p.mean.resize(3); }), "pendulum: mean has 3 entries (expected 4 finite ones)");
-  EXPECT_EQ(refused([](auto& p) { p.window = 0; }), "pendulum: a window of 0 intervals (expected at least 1)");
-  EXPECT_EQ(refused([](auto& p) { p.is_positive[0] = true; }),
-            "pendulum: the mean of angle is 0.000000 (expected more than 0, as it is positive)");
+  EXPECT_MESSAGE(make([](auto& p) { p.noise.setZero(); }), std::invalid_argument, "pendulum: a noise that is not positive (expected more than 0)");
+  EXPECT_MESSAGE(make([](auto& p) { p.mean.resize(3); }), std::invalid_argument, "pendulum: mean has 3 entries (expected 4 finite ones)");
+  EXPECT_MESSAGE(make([](auto& p) { p.window = 0; }), std::invalid_argument, "pendulum: a window of 0 intervals (expected at least 1)");
+  EXPECT_MESSAGE(make([](auto& p) { p.is_positive[0] = true; }), std::invalid_argument,
+                 "the mean of angle is 0.000000 (expected more than 0, as it is positive)");
 }
 
 }  // namespace

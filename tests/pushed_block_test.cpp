@@ -1,8 +1,8 @@
 // The pushed block: what a finger's place and force tell of a body that nobody measures, and what they do not.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "tenon/core/input_error.hpp"
 #include "tenon/mpc/closed_loop.hpp"
@@ -125,12 +125,11 @@ TEST(PushedBlock, IsTheSameBitForBitEveryTime) {
 }
 
 TEST(PushedBlock, RefusesAFileThatMakesNoSense) {
-  const auto refused = [](const std::string& change) {
-    return message_of<InputError>([&] { make_task("pushed-block", {change}); });
-  };
-  EXPECT_THAT(refused("motion=idle"), testing::HasSubstr("unknown motion 'idle' (expected rest, steady or shaken)"));
-  EXPECT_THAT(refused("believed.mass=[0.3, 0]"), testing::HasSubstr("a mean or a deviation that is not positive"));
-  EXPECT_THAT(refused("window=0"), testing::HasSubstr("window"));
+  const auto make = [](const std::string& change) { make_task("pushed-block", {change}); };
+  EXPECT_MESSAGE(make("motion=\"idle\""), InputError, "unknown motion 'idle' (expected rest, steady or shaken)");
+  EXPECT_MESSAGE(make("believed.mass=[0.3, 0]"), InputError, "a mean or a deviation that is not positive (expected [mean, deviation]");
+  EXPECT_MESSAGE(make("window=0"), InputError, "window");
+  EXPECT_MESSAGE(make("block.mass=-1"), InputError, "mass");
 }
 
 }  // namespace

@@ -55,7 +55,6 @@ EstimationProblem estimation_problem(const Parameters& parameters, const Prior& 
   problem.longest_step = parameters.period / 2;
   problem.solve.tolerance = 1e-6;
   problem.solve.max_iterations = 20;
-  problem.solve.scaling = false;
   return problem;
 }
 
