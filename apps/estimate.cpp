@@ -59,17 +59,27 @@ Eigen::MatrixXd covariance_of(const Estimator& estimator) {
   return covariance;
 }
 
-Vector deviations(const Estimator& estimator) {
-  return covariance_of(estimator).diagonal().cwiseSqrt();
-}
+
+/// Means and covariance of all estimates.
+struct Beliefs {
+  Vector mean;
+  Eigen::MatrixXd covariance;
+
+  explicit Beliefs(const Estimator& estimator) : mean(estimator.num_estimates()), covariance(covariance_of(estimator)) {
+    estimator.mean(mean);
+  }
+  double deviation(int i) const { return std::sqrt(covariance(i, i)); }
+  double correlation(int i, int j) const { return covariance(std::max(i, j), std::min(i, j)) / (deviation(i) * deviation(j)); }
+};
 
 struct Belief {
   std::string name;
   double mean, deviation, prior_deviation;
+  double left;                 // of the deviation there was before; of what is known in proportion, both relative to their means
   std::string companion = {};  // what its error is tied to most
   double correlation = 0;      // with that
 
-  bool is_observed() const { return deviation <= kObserved * prior_deviation; }
+  bool is_observed() const { return left <= kObserved; }
   bool is_tied() const { return std::abs(correlation) >= kTied; }
   std::string remark() const {
     const std::string tie = is_tied() ? fmt::format("better known together with {} (correlation {:.3f})", companion, correlation) : "";
@@ -78,22 +88,20 @@ struct Belief {
   }
 };
 
-std::vector<Belief> beliefs_of(const Estimator& estimator, const Vector& prior) {
-  Vector mean(estimator.num_estimates());
-  estimator.mean(mean);
-  const Eigen::MatrixXd covariance = covariance_of(estimator);
-  const Vector deviation = covariance.diagonal().cwiseSqrt();
-  std::vector<Belief> beliefs;
-  for (int i = 0; i < mean.size(); ++i) {
-    beliefs.push_back({estimator.estimate_name(i), mean[i], deviation[i], prior[i]});
-    for (int j = 0; j < mean.size(); ++j) {
-      const double correlation = covariance(std::max(i, j), std::min(i, j)) / (deviation[i] * deviation[j]);
-      if (j == i || !(std::abs(correlation) > std::abs(beliefs.back().correlation))) continue;
-      beliefs.back().companion = estimator.estimate_name(j);
-      beliefs.back().correlation = correlation;
+std::vector<Belief> list_of(const Estimator& estimator, const Beliefs& prior) {
+  const Beliefs now(estimator);
+  std::vector<Belief> list;
+  for (int i = 0; i < now.mean.size(); ++i) {
+    const double before = prior.deviation(i), size = estimator.is_known_in_proportion(i) ? now.mean[i] / prior.mean[i] : 1;
+    Belief belief{estimator.estimate_name(i), now.mean[i], now.deviation(i), before, now.deviation(i) / (size * before)};
+    for (int j = 0; j < now.mean.size(); ++j) {
+      if (j == i || !(std::abs(now.correlation(i, j)) > std::abs(belief.correlation))) continue;
+      belief.companion = estimator.estimate_name(j);
+      belief.correlation = now.correlation(i, j);
     }
+    list.push_back(belief);
   }
-  return beliefs;
+  return list;
 }
 
 Json json_of(const std::vector<Belief>& beliefs, const std::string& scene, int rows) {
@@ -148,23 +156,23 @@ int run_estimate(const Arguments& arguments) {
   }
 
   Cells measurements(record, measured), commands(record, commanded);
-  Vector mean(estimator.num_estimates()), held = Vector::Zero(static_cast<int>(commanded.size()));
+  Vector held = Vector::Zero(static_cast<int>(commanded.size()));
   estimator.reset();
-  const Vector prior = deviations(estimator);
+  const Beliefs prior(estimator);
   for (std::size_t k = 0; k < record.lines.size(); ++k) {
     estimator.update(record["t"][k], measurements.at(k), held);  // a row's command holds from there on
     held = commands.at(k);
     if (!csv) continue;
-    estimator.mean(mean);
+    const Beliefs now(estimator);
     *csv << record["t"][k];
-    for (const double value : mean) *csv << value;
-    for (const double value : deviations(estimator)) *csv << value;
+    for (const double value : now.mean) *csv << value;
+    for (int i = 0; i < now.mean.size(); ++i) *csv << now.deviation(i);
     csv->end_row();
   }
   if (csv) csv->finish();
   make_report(arguments, {output});
 
-  const std::vector<Belief> beliefs = beliefs_of(estimator, prior);
+  const std::vector<Belief> beliefs = list_of(estimator, prior);
   if (arguments.json)
     print(json_of(beliefs, scene, record.rows()));
   else if (!arguments.quiet)

@@ -27,6 +27,7 @@ class MovingHorizon final : public Estimator {
   void update(double t, ConstVectorRef measurements, ConstVectorRef commands) override;
   void mean(VectorRef values) const override { values = mean_; }
   void covariance(MatrixRef values) const override { values = covariance_; }
+  bool is_known_in_proportion(int i) const override { return problem_.is_positive[static_cast<std::size_t>(i)]; }
   std::string estimate_name(int i) const override { return "believed_" + problem_.dae->state_name(i); }
 
   /// How the last window was solved, and the window itself with its solution.
