@@ -12,6 +12,7 @@ EstimationProblem::EstimationProblem(std::shared_ptr<const Dae> dae_, std::share
       mean(Vector::Zero(dae->num_states())),
       deviation(mean),
       is_positive(static_cast<std::size_t>(mean.size()), false),
+      ripple(Vector::Zero(dae->num_inputs())),
       drift(mean) {
   solve.warm_start = true;
   solve.scaling = false;
@@ -29,6 +30,7 @@ void validate(const EstimationProblem& problem) {
   require(problem.dae->num_algebraics() == 0 && problem.dae->has_derivatives(),
           "a Dae that is not solved for its derivatives (expected xdot = f(x, u), without algebraic variables)");
   require(arguments == nz, "what is measured takes " + std::to_string(arguments) + " arguments (expected " + std::to_string(nz) + ", x and u)");
+  sized(problem.ripple, nz - nx, "ripple");
   sized(problem.noise, problem.measured->num_values(), "noise");
   sized(problem.mean, nx, "mean"), sized(problem.deviation, nx, "deviation"), sized(problem.drift, nx, "drift");
   require(static_cast<int>(problem.is_positive.size()) == nx, "what is positive has the wrong length (expected " + std::to_string(nx) + ")");
@@ -38,6 +40,7 @@ void validate(const EstimationProblem& problem) {
   }
   require((problem.noise.array() > 0).all(), "a noise that is not positive (expected more than 0)");
   require((problem.deviation.array() > 0).all(), "a deviation that is not positive (expected more than 0)");
+  require((problem.ripple.array() >= 0).all(), "a negative ripple (expected 0 or more)");
   require((problem.drift.array() >= 0).all(), "a negative drift (expected 0 or more)");
   require(problem.window >= 1, "a window of " + std::to_string(problem.window) + " intervals (expected at least 1)");
   require(problem.longest_step > 0, "a longest step of " + std::to_string(problem.longest_step) + " s (expected more than 0)");

@@ -1,6 +1,8 @@
 // An estimation problem over a Dae: what its states, and parameters among them, have been and are, by what was measured.
 //
-//     x' = f(x, u) + drift,      y_k = h(x(t_k), u) + noise,      x(t_0) = mean +- deviation          u: what was commanded, held
+//     x' = f(x, u + ripple) + drift,      y_k = h(x(t_k), u) + noise,      x(t_0) = mean +- deviation
+//
+// u is what was commanded, held from measurement to measurement; its ripple is drawn anew for each interval.
 //
 // A parameter is a state with x' = 0. All noise is Gaussian and independent, entry by entry; of what is positive (a mass, a friction) the
 // logarithm is, since that is known in proportion. It knows neither transcription nor solver: mpc makes a moving horizon of it. To optimal
@@ -28,6 +30,7 @@ struct EstimationProblem {
   Vector noise;                                    // of h: standard deviations, > 0
   Vector mean, deviation;                          // of x before anything was measured; deviation > 0
   std::vector<bool> is_positive;                   // of x: `mean` is then its median, deviation/mean the deviation of its logarithm
+  Vector ripple;                                   // of u: standard deviations, >= 0
   Vector drift;                                    // of x: the standard deviation of what comes to it in 1 s, >= 0; of what is positive: at its mean
 
   int window = 10;             // intervals between measurements that are looked back over, >= 1

@@ -8,18 +8,21 @@ namespace tenon {
 
 /// Storage of an evaluation, and its outcome at every instant.
 struct EstimationWindow::Evaluation final : Nlp::Scratch {
-  Evaluation(const EstimationProblem& problem, int nx, int ny, int instants)
+  Evaluation(const EstimationProblem& problem, int nx, int ny, int ripples, int instants)
       : transition(*problem.dae, problem.mode, problem.longest_step),
         z(problem.measured->num_arguments()),
         slope(nx),
         surprise(nx),
         by_z(ny, z.size()),
-        at(std::size_t(instants), {Vector::Zero(ny), Vector::Zero(nx), Eigen::MatrixXd::Zero(nx, ny), Eigen::MatrixXd::Zero(nx, nx)}) {}
+        command(problem.dae->num_inputs()),
+        at(std::size_t(instants), {Vector::Zero(ny), Vector::Zero(nx), Eigen::MatrixXd::Zero(nx, ny), Eigen::MatrixXd::Zero(nx, nx),
+                                   Eigen::MatrixXd::Zero(nx, ripples)}) {}
 
   StateTransition transition;
   Vector z, slope;       // (x, u); dx/dxi
   Vector surprise;       // xi_0 - m
   Eigen::MatrixXd by_z;  // of h
+  Vector command;        // with its ripple
   std::vector<Linearised> at;
 };
 
@@ -36,7 +39,7 @@ EstimationWindow::EstimationWindow(const EstimationProblem& problem)
       nx_(problem.dae->num_states()),
       ny_(problem.measured->num_values()),
       intervals_(problem.window),
-      nw_(static_cast<int>((problem.drift.array() > 0).count())),
+      nw_(static_cast<int>((problem.ripple.array() > 0).count() + (problem.drift.array() > 0).count())),
       stride_(nx_ + nw_),
       scale_(problem.deviation),
       instants_(std::size_t(intervals_) + 1, {0, Vector::Zero(problem.dae->num_inputs()), Vector::Zero(ny_), Vector::Zero(ny_)}),
@@ -44,17 +47,24 @@ EstimationWindow::EstimationWindow(const EstimationProblem& problem)
       now_(prior_),
       factor_(nx_),
       whitening_(identity(nx_)),
-      variance_(Vector::Zero(nx_)),
-      own_(std::make_unique<Evaluation>(problem, nx_, ny_, intervals_ + 1)) {
+      variance_(Vector::Zero(nx_)) {
+  for (int j = 0; j < problem.ripple.size(); ++j) {
+    if (problem.ripple[j] > 0) rippling_.push_back(j);
+  }
   for (int i = 0; i < nx_; ++i) {
     if (problem.drift[i] > 0) drifting_.push_back(i);
     if (problem.is_positive[std::size_t(i)]) scale_[i] /= problem.mean[i];
   }
+  own_ = make_workspace();
   reset();
 }
 
 void EstimationWindow::reset() {
   for (Instant& instant : instants_) instant.dt = 0, instant.weights.setZero();
+  forget();
+}
+
+void EstimationWindow::forget() {
   for (int i = 0; i < nx_; ++i) prior_.mean[i] = (problem_.is_positive[std::size_t(i)] ? std::log(problem_.mean[i]) : problem_.mean[i]) / scale_[i];
   prior_.covariance.setIdentity();
   whiten();
@@ -63,10 +73,10 @@ void EstimationWindow::reset() {
 void EstimationWindow::slide(ConstVectorRef x, double dt, ConstVectorRef commands, ConstVectorRef measurements) {
   auto& evaluation = static_cast<Evaluation&>(*own_);
   Linearised& first = evaluation.at[0];
-  linearise(0, x.head(nx_), evaluation, first);
-  learn(0, x.head(nx_), first, prior_);
-  move(0, x.head(nx_), first, prior_);
-  whiten();
+  linearise(0, x, evaluation, first);
+  learn(0, x, first, prior_);
+  move(0, x, first, prior_);
+  if (!whiten()) forget();
 
   std::ranges::rotate(instants_, instants_.begin() + 1);
   Instant& last = instants_.back();
@@ -105,15 +115,18 @@ void EstimationWindow::start(VectorRef x, Evaluation& evaluation) const {
 
 // xi_{k+1}, without drift
 void EstimationWindow::lead_on(int k, VectorRef x, Evaluation& evaluation) const {
-  linearise(k, x.segment(state_at(k), nx_), evaluation, evaluation.at[0]);
+  linearise(k, x, evaluation, evaluation.at[0]);
   x.segment(state_at(k + 1), nx_) = evaluation.at[0].next;
 }
 
 // P = L L',  W = L^-1
-void EstimationWindow::whiten() {
+bool EstimationWindow::whiten() {
+  if (!prior_.mean.allFinite() || !prior_.covariance.allFinite()) return false;
   factor_.compute(prior_.covariance);
+  if (factor_.info() != Eigen::Success) return false;
   whitening_.setIdentity();
   factor_.matrixL().solveInPlace(whitening_);
+  return true;
 }
 
 double EstimationWindow::drift(int i, int k) const {
@@ -128,10 +141,10 @@ void EstimationWindow::to_state(ConstVectorRef xi, VectorRef x, VectorRef slope)
   }
 }
 
-// r = (h(x) - y) / noise,   next = phi: where x leads
-void EstimationWindow::linearise(int k, ConstVectorRef xi, Evaluation& at, Linearised& out) const {
+// r = (h(x) - y) / noise,   next = phi(x, u + ripple w)
+void EstimationWindow::linearise(int k, ConstVectorRef x, Evaluation& at, Linearised& out) const {
   const Instant& here = instant(k);
-  to_state(xi, at.z.head(nx_), at.slope);
+  to_state(state(x, k), at.z.head(nx_), at.slope);
   at.z.tail(at.z.size() - nx_) = here.commands;
   problem_.measured->values(at.z, out.residual);
   problem_.measured->jacobian(at.z, at.by_z);
@@ -140,13 +153,22 @@ void EstimationWindow::linearise(int k, ConstVectorRef xi, Evaluation& at, Linea
     for (int c = 0; c < nx_; ++c) out.gradients(c, j) = here.weights[j] * at.by_z(j, c) * at.slope[c];
   }
   if (k == intervals_) return;
-  at.transition.advance(at.z.head(nx_), instant(k + 1).commands, instant(k + 1).dt);
-  out.a.noalias() = at.transition.derivative * at.slope.asDiagonal();
+  const int ripples = static_cast<int>(rippling_.size());
+  at.command = instant(k + 1).commands;
+  for (int j = 0; j < ripples; ++j) at.command[rippling_[std::size_t(j)]] += problem_.ripple[rippling_[std::size_t(j)]] * ripple(x, k)[j];
+  at.transition.advance(at.z.head(nx_), at.command, instant(k + 1).dt);
+  out.a.noalias() = at.transition.derivative.leftCols(nx_) * at.slope.asDiagonal();
+  for (int j = 0; j < ripples; ++j) {
+    const int u = rippling_[std::size_t(j)];
+    out.g.col(j) = problem_.ripple[u] * at.transition.derivative.col(nx_ + u);
+  }
   for (int i = 0; i < nx_; ++i) {
     const double next = at.transition.state[i];
     const bool is_positive = problem_.is_positive[std::size_t(i)];
     out.next[i] = (is_positive ? std::log(next) : next) / scale_[i];
-    out.a.row(i) /= is_positive ? scale_[i] * next : scale_[i];
+    const double unit = is_positive ? scale_[i] * next : scale_[i];
+    out.a.row(i) /= unit;
+    out.g.row(i) /= unit;
   }
 }
 
@@ -154,14 +176,14 @@ void EstimationWindow::linearise(int k, ConstVectorRef xi, Evaluation& at, Linea
 void EstimationWindow::learn(int k, ConstVectorRef x, const Linearised& at, GaussianBelief& belief) const {
   for (int i = 0; i < ny_; ++i) {
     if (instant(k).weights[i] == 0) continue;
-    belief.learn(at.gradients.col(i), at.gradients.col(i).dot(x) - at.residual[i]);
+    belief.learn(at.gradients.col(i), at.gradients.col(i).dot(state(x, k)) - at.residual[i]);
   }
 }
 
 void EstimationWindow::move(int k, ConstVectorRef x, const Linearised& at, GaussianBelief& belief) {
   variance_.setZero();
   for (const int i : drifting_) variance_[i] = drift(i, k) * drift(i, k);
-  belief.move(at.a, x, at.next, variance_);
+  belief.move(at.a, at.g, state(x, k), ripple(x, k), at.next, variance_);
 }
 
 const GaussianBelief& EstimationWindow::belief(ConstVectorRef x) {
@@ -169,9 +191,8 @@ const GaussianBelief& EstimationWindow::belief(ConstVectorRef x) {
   const auto& at = static_cast<const Evaluation&>(*own_).at;
   now_ = prior_;
   for (int k = 0; k <= intervals_; ++k) {
-    const ConstVectorRef here = x.segment(state_at(k), nx_);
-    learn(k, here, at[std::size_t(k)], now_);
-    if (k < intervals_) move(k, here, at[std::size_t(k)], now_);
+    learn(k, x, at[std::size_t(k)], now_);
+    if (k < intervals_) move(k, x, at[std::size_t(k)], now_);
   }
   return now_;
 }
@@ -185,7 +206,7 @@ Stages EstimationWindow::stages() const {
   return stages;
 }
 
-// xi_k: the prior's W, or the -1 of the interval before; what is measured; A.   w_k: G
+// xi_k: the prior's W, or the -1 of the interval before; what is measured; A.   w_k: G, drift
 SparsePattern EstimationWindow::jacobian_pattern() const {
   SparsePattern pattern{num_constraints(), num_variables(), {0}, {}};
   const auto rows = [&](int begin, int count) {
@@ -198,8 +219,13 @@ SparsePattern EstimationWindow::jacobian_pattern() const {
       rows(rows_at(k), ny_ + (k < intervals_ ? nx_ : 0));
       pattern.outer.push_back(pattern.nonzeros());
     }
-    for (int j = 0; j < nw_ && k < intervals_; ++j) {
-      rows(rows_at(k) + ny_ + drifting_[std::size_t(j)], 1);
+    if (k == intervals_) break;
+    for (std::size_t j = 0; j < rippling_.size(); ++j) {
+      rows(rows_at(k) + ny_, nx_);
+      pattern.outer.push_back(pattern.nonzeros());
+    }
+    for (const int i : drifting_) {
+      rows(rows_at(k) + ny_ + i, 1);
       pattern.outer.push_back(pattern.nonzeros());
     }
   }
@@ -222,12 +248,12 @@ void EstimationWindow::bounds(Bounds& bounds) const {
 }
 
 Nlp::Workspace EstimationWindow::make_workspace() const {
-  return std::make_unique<Evaluation>(problem_, nx_, ny_, intervals_ + 1);
+  return std::make_unique<Evaluation>(problem_, nx_, ny_, static_cast<int>(rippling_.size()), intervals_ + 1);
 }
 
 void EstimationWindow::prepare(ConstVectorRef x, Workspace& workspace) const {
   auto& evaluation = static_cast<Evaluation&>(*workspace);
-  for (int k = 0; k <= intervals_; ++k) linearise(k, x.segment(state_at(k), nx_), evaluation, evaluation.at[std::size_t(k)]);
+  for (int k = 0; k <= intervals_; ++k) linearise(k, x, evaluation, evaluation.at[std::size_t(k)]);
 }
 
 double EstimationWindow::objective(ConstVectorRef x, Workspace&) const {
@@ -251,10 +277,8 @@ void EstimationWindow::constraints(ConstVectorRef x, Workspace& workspace, Vecto
     if (k == intervals_) break;
     auto dynamics = values.segment(rows_at(k) + ny_, nx_);
     dynamics = here.next - x.segment(state_at(k + 1), nx_);
-    for (int j = 0; j < nw_; ++j) {
-      const int i = drifting_[std::size_t(j)];
-      dynamics[i] += drift(i, k) * x[state_at(k) + nx_ + j];
-    }
+    int w = state_at(k) + nx_ + static_cast<int>(rippling_.size());
+    for (const int i : drifting_) dynamics[i] += drift(i, k) * x[w++];
   }
 }
 
@@ -269,7 +293,9 @@ void EstimationWindow::jacobian(ConstVectorRef, Workspace& workspace, std::span<
       for (int j = 0; j < ny_; ++j) *out++ = here.gradients(c, j);
       if (k < intervals_) out = std::copy_n(here.a.data() + c * nx_, nx_, out);
     }
-    for (int j = 0; j < nw_ && k < intervals_; ++j) *out++ = drift(drifting_[std::size_t(j)], k);
+    if (k == intervals_) break;
+    out = std::copy_n(here.g.data(), here.g.size(), out);
+    for (const int i : drifting_) *out++ = drift(i, k);
   }
 }
 
@@ -279,9 +305,11 @@ void EstimationWindow::hessian(ConstVectorRef, double sigma, ConstVectorRef, Wor
 
 std::string EstimationWindow::variable_name(int i) const {
   const int k = std::min(i / stride_, intervals_), c = i - k * stride_;
-  const bool is_state = c < nx_;
-  const int state = is_state ? c : drifting_[std::size_t(c - nx_)];
-  return (is_state ? "" : "drift of ") + problem_.dae->state_name(state) + "[" + std::to_string(k) + "]";
+  const int ripples = static_cast<int>(rippling_.size());
+  const std::string instant = "[" + std::to_string(k) + "]";
+  if (c < nx_) return problem_.dae->state_name(c) + instant;
+  if (c < nx_ + ripples) return "ripple of " + problem_.dae->input_name(rippling_[std::size_t(c - nx_)]) + instant;
+  return "drift of " + problem_.dae->state_name(drifting_[std::size_t(c - nx_ - ripples)]) + instant;
 }
 
 std::string EstimationWindow::constraint_name(int j) const {

@@ -1,9 +1,9 @@
 // The last N intervals of an estimation problem as a nonlinear program whose stages are those intervals.
 //
-//     min   1/2 |W (xi_0 - m)|^2 + 1/2 sum |r_k(x_k)|^2 + 1/2 sum |w_k|^2        s.t.   phi_k(xi_k) + G_k w_k - xi_{k+1} = 0
+//     min   1/2 |W (xi_0 - m)|^2 + 1/2 sum |r_k(x_k)|^2 + 1/2 sum |w_k|^2        s.t.   phi_k(xi_k, w_k) - xi_{k+1} = 0
 //
 //     xi: x, or the logarithm of what is positive, in units s of the prior's deviations
-//     r_k = (h(x_k) - y_k) / noise                    phi_k: where x leads, as xi                    G_k w_k: drift over interval k
+//     r_k = (h(x_k) - y_k) / noise           phi_k: where x leads, as xi           w_k: ripple of the commands and drift, in their deviations
 //
 // The squares of prior and measurements are rows that give way (compliance 1), so that their multipliers are the residuals. What was not
 // measured has weight 0. Variables are ordered xi_0 w_0 xi_1 ... xi_N, rows: prior, then r_k and the dynamics by interval. Hessian: Gauss
@@ -69,27 +69,33 @@ class EstimationWindow final : public Nlp {
     double dt = 0;  // s
     Vector commands, measured, weights;
   };
-  /// r_k and phi_k with their derivatives by xi_k: the gradient of each residual as a column, and A.
+  /// r_k and phi_k but for drift, with their derivatives: the gradient of each residual as a column, A by xi_k, G by the ripple.
   struct Linearised {
     Vector residual, next;
-    Eigen::MatrixXd gradients, a;
+    Eigen::MatrixXd gradients, a, g;
   };
   struct Evaluation;
 
   int rows_at(int k) const { return nx_ + k * (ny_ + nx_); }
   const Instant& instant(int k) const { return instants_[static_cast<std::size_t>(k)]; }
+  /// Of the variables x of all instants, those of instant k; nothing ripples after the last.
+  ConstVectorRef state(ConstVectorRef x, int k) const { return x.segment(state_at(k), nx_); }
+  ConstVectorRef ripple(ConstVectorRef x, int k) const { return x.segment(state_at(k) + nx_, static_cast<int>(rippling_.size())); }
   void linearise(int k, ConstVectorRef x, Evaluation& at, Linearised& out) const;
   void learn(int k, ConstVectorRef x, const Linearised& at, GaussianBelief& belief) const;
   void move(int k, ConstVectorRef x, const Linearised& at, GaussianBelief& belief);
   void start(VectorRef x, Evaluation& evaluation) const;
   void lead_on(int k, VectorRef x, Evaluation& evaluation) const;
-  void whiten();
-  double drift(int i, int k) const;  // G_k of noisy state i
+  /// Back to the prior of the beginning.
+  void forget();
+  /// False where the prior is no Gaussian any more.
+  bool whiten();
+  double drift(int i, int k) const;  // of state i over interval k
 
   const EstimationProblem& problem_;
   int nx_, ny_, intervals_, nw_, stride_;
-  std::vector<int> drifting_;  // states
-  Vector scale_;               // s
+  std::vector<int> rippling_, drifting_;  // commands, states
+  Vector scale_;                          // s
   std::vector<Instant> instants_;
   GaussianBelief prior_, now_;
   Eigen::LLT<Eigen::MatrixXd> factor_;

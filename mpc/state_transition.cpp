@@ -8,16 +8,18 @@ namespace tenon {
 
 StateTransition::StateTransition(const Dae& dae, const DaeMode& mode, double longest_step)
     : state(Vector::Zero(dae.num_states())),
-      derivative(Eigen::MatrixXd::Identity(state.size(), state.size())),
+      derivative(Eigen::MatrixXd::Identity(state.size(), state.size() + dae.num_inputs())),
       dae_(dae),
       mode_(mode),
       longest_step_(longest_step),
       workspace_(dae.make_workspace()),
       pattern_(dae.jacobian_pattern()),
+      input_pattern_(dae.input_jacobian_pattern()),
       values_(static_cast<std::size_t>(pattern_.nonzeros())),
+      input_values_(static_cast<std::size_t>(input_pattern_.nonzeros())),
       at_(state),
       moved_(derivative),
-      by_x_(derivative) {
+      by_x_(Eigen::MatrixXd::Zero(state.size(), state.size())) {
   rate_.fill(state);
   derivative_rate_.fill(derivative);
 }
@@ -30,13 +32,16 @@ void StateTransition::advance(ConstVectorRef x, ConstVectorRef u, double dt) {
   for (int k = 0; k < steps; ++k) step(dt / steps, u);
 }
 
-// k_i and K_i = df/dx S at what stands in at_ and moved_
+// k_i and K_i = df/dx S + [0, df/du] at what stands in at_ and moved_
 void StateTransition::rates(std::size_t stage, ConstVectorRef u) {
   dae_.derivatives(mode_, 0, at_, u, workspace_, rate_[stage], none_);
-  dae_.jacobian(mode_, DaePoint(0, rate_[stage], at_, none_, u), 0, workspace_, values_);
+  const DaePoint point(0, rate_[stage], at_, none_, u);
+  dae_.jacobian(mode_, point, 0, workspace_, values_);
+  dae_.input_jacobian(mode_, point, workspace_, input_values_);
   by_x_.setZero();
   for_each_entry(pattern_, [&](int r, int c, std::size_t e) { by_x_(r, c) = -values_[e]; });
   derivative_rate_[stage].noalias() = by_x_ * moved_;
+  for_each_entry(input_pattern_, [&](int r, int c, std::size_t e) { derivative_rate_[stage](r, state.size() + c) -= input_values_[e]; });
 }
 
 void StateTransition::step(double h, ConstVectorRef u) {

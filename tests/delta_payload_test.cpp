@@ -12,7 +12,7 @@
 namespace tenon::delta_payload {
 namespace {
 
-constexpr int kWorlds = 40;
+constexpr int kWorlds = 24;
 
 TEST(DeltaPayload, ACircleTellsPayloadAndDamping) {
   EstimationRun experiment("delta-payload", {"duration=1.5"});

@@ -9,7 +9,7 @@
 namespace tenon::pushed_block {
 namespace {
 
-constexpr int kWorlds = 60;
+constexpr int kWorlds = 50;
 
 TEST(PushedBlock, AShakenFingerTellsPlaceMassAndFrictionOfWhatItPushes) {
   EstimationRun experiment("pushed-block", {});

@@ -1,6 +1,5 @@
 #include "tenon/problems/delta_payload/model.hpp"
 
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -25,18 +24,13 @@ class PayloadDae final : public Dae {
   void residual(const DaeMode&, const DaePoint& at, Workspace&, VectorRef F) const override { F = at.xdot - rates(at.x, at.u); }
 
   void jacobian(const DaeMode&, const DaePoint& at, double alpha, Workspace&, std::span<double> values) const override {
-    constexpr double kStep = 1e-5;  // rad, rad/s, kg, N m s
     State x = at.x;
-    for (int c = 0; c < kStates; ++c) {
-      x[c] = at.x[c] + kStep;
-      const State above = rates(x, at.u);
-      x[c] = at.x[c] - kStep;
-      const State below = rates(x, at.u);
-      x[c] = at.x[c];
-      Eigen::Map<State> column(values.data() + kStates * c);
-      column = (below - above) / (2 * kStep);
-      column[c] += alpha;
-    }
+    differentiate(x, [&] { return rates(x, at.u); }, values);
+    for (int c = 0; c < kStates; ++c) values[std::size_t((kStates + 1) * c)] += alpha;
+  }
+  void input_jacobian(const DaeMode&, const DaePoint& at, Workspace&, std::span<double> values) const override {
+    Vector3 u = at.u;
+    differentiate(u, [&] { return rates(at.x, u); }, values);
   }
 
   bool has_derivatives() const override { return true; }
@@ -58,6 +52,21 @@ class PayloadDae final : public Dae {
     return k;
   }
 
+  /// -df/dz, column by column, f to be evaluated at what stands in z.
+  template <int N, class F>
+  static void differentiate(Eigen::Matrix<double, N, 1>& z, F&& f, std::span<double> values) {
+    constexpr double kStep = 1e-5;  // rad, rad/s, kg, N m s, N m
+    for (int c = 0; c < N; ++c) {
+      const double here = z[c];
+      z[c] = here + kStep;
+      const State above = f();
+      z[c] = here - kStep;
+      const State below = f();
+      z[c] = here;
+      Eigen::Map<State>(values.data() + kStates * c) = (below - above) / (2 * kStep);
+    }
+  }
+
   State rates(ConstVectorRef x, ConstVectorRef u) const {
     State out = State::Zero();
     const Vector3 y_rate = x.segment<3>(kRate);
@@ -76,14 +85,6 @@ class PayloadDae final : public Dae {
   delta::Robot robot_;  // of it only the geometry counts
   delta::ArmConstants bare_;
 };
-
-/// rad/s that 1 N m of each motor, held for a period and then drawn anew, adds in 1 s: of the rows of M_y^-1, as if they were independent
-Vector3 rate_drift(const Parameters& parameters, const delta::Robot& robot, const Vector3& angles) {
-  const delta::Forward forward = delta::forward_kinematics(robot, angles);
-  const delta::Motion motion(robot, forward.at);
-  const delta::Matrix3 inertia = delta::reduced_inertia(delta::ArmConstants(robot), forward.at, motion);
-  return parameters.torque_ripple * std::sqrt(parameters.period) * inertia.inverse().rowwise().norm();
-}
 
 }  // namespace
 
@@ -112,8 +113,7 @@ EstimationProblem estimation_problem(const Parameters& parameters, const Prior& 
   problem.mean = prior.mean;
   problem.deviation = prior.deviation;
   problem.is_positive[kPayload] = problem.is_positive[kDamping] = true;
-  problem.drift.segment<3>(kRate) =
-      rate_drift(parameters, robot_with(parameters, prior.mean[kPayload], prior.mean[kDamping]), prior.mean.segment<3>(kAngle));
+  problem.ripple.setConstant(parameters.torque_ripple);
   problem.window = window;
   problem.longest_step = parameters.period;
   problem.solve.tolerance = 1e-6;

@@ -40,7 +40,7 @@ double contact_force(const Parameters& parameters, const State& x) {
   return pad_force(parameters, x[kFinger] - x[kBlock]);
 }
 
-// A force that is held for a period and then drawn anew adds to a velocity what a random walk does:  sigma T / m a period, each period
+// A friction that is held for a period and then drawn anew adds to a velocity what a random walk does:  sigma T / m a period, each period
 EstimationProblem estimation_problem(const Parameters& parameters, const Prior& prior, int window) {
   EstimationProblem problem(std::make_shared<AutomaticDae<FingerAndBlock>>(FingerAndBlock{parameters}),
                             automatic_function<kStates + 1, 1>([](const auto& z, auto& y) { y[0] = z[kFinger]; }, {"finger"}));
@@ -49,7 +49,7 @@ EstimationProblem estimation_problem(const Parameters& parameters, const Prior& 
   problem.mean = prior.mean;
   problem.deviation = prior.deviation;
   problem.is_positive[kBlockMass] = problem.is_positive[kFriction] = true;
-  problem.drift[kFingerRate] = parameters.force_ripple / parameters.finger_mass * std::sqrt(parameters.period);
+  problem.ripple[0] = parameters.force_ripple;
   problem.drift[kBlockRate] = parameters.friction_ripple / prior.mean[kBlockMass] * std::sqrt(parameters.period);
   problem.window = window;
   problem.longest_step = parameters.period / 2;
