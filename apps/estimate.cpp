@@ -8,11 +8,13 @@
 #include <optional>
 #include <stdexcept>
 
+#include "tenon/apps/default_solver.hpp"
 #include "tenon/apps/json.hpp"
 #include "tenon/apps/make_report.hpp"
 #include "tenon/apps/table.hpp"
 #include "tenon/apps/verb.hpp"
 #include "tenon/core/csv.hpp"
+#include "tenon/mpc/task_controllers.hpp"
 #include "tenon/problems/tasks.hpp"
 
 namespace tenon {
@@ -20,6 +22,7 @@ namespace tenon {
 namespace {
 
 constexpr double kObserved = 0.7;  // of the prior's standard deviation: where more than this is left, little was learnt
+constexpr double kTied = 0.99;     // of a correlation: beyond it two estimates are known together, not apart
 
 std::vector<std::string> names_of(int count, const auto& name) {
   std::vector<std::string> names;
@@ -56,10 +59,6 @@ Eigen::MatrixXd covariance_of(const Estimator& estimator) {
   return covariance;
 }
 
-Vector deviations(const Estimator& estimator) {
-  return covariance_of(estimator).diagonal().cwiseSqrt();
-}
-
 /// Of a scene's picture what an estimator alone can tell: no bodies, no truth.
 Scenery belief_scenery(const ControlTask& task) {
   Scenery scenery;
@@ -73,17 +72,56 @@ Scenery belief_scenery(const ControlTask& task) {
   return scenery;
 }
 
+/// Means and covariance of all estimates.
+struct Beliefs {
+  Vector mean;
+  Eigen::MatrixXd covariance;
+
+  explicit Beliefs(const Estimator& estimator) : mean(estimator.num_estimates()), covariance(covariance_of(estimator)) {
+    estimator.mean(mean);
+  }
+  double deviation(int i) const { return std::sqrt(covariance(i, i)); }
+  double correlation(int i, int j) const { return covariance(std::max(i, j), std::min(i, j)) / (deviation(i) * deviation(j)); }
+};
+
 struct Belief {
   std::string name;
   double mean, deviation, prior_deviation;
+  double left;                 // of the deviation there was before; of what is known in proportion, both relative to their means
+  std::string companion = {};  // what its error is tied to most
+  double correlation = 0;      // with that
 
-  bool is_observed() const { return deviation <= kObserved * prior_deviation; }
+  bool is_observed() const { return left <= kObserved; }
+  bool is_tied() const { return std::abs(correlation) >= kTied; }
+  std::string remark() const {
+    const std::string tie = is_tied() ? fmt::format("better known together with {} (correlation {:.3f})", companion, correlation) : "";
+    if (is_observed()) return tie;
+    return "not observed: this record says little about it" + (tie.empty() ? "" : "; " + tie);
+  }
 };
+
+std::vector<Belief> list_of(const Estimator& estimator, const Beliefs& prior) {
+  const Beliefs now(estimator);
+  std::vector<Belief> list;
+  for (int i = 0; i < now.mean.size(); ++i) {
+    const double before = prior.deviation(i), size = estimator.is_known_in_proportion(i) ? now.mean[i] / prior.mean[i] : 1;
+    Belief belief{estimator.estimate_name(i), now.mean[i], now.deviation(i), before, now.deviation(i) / (size * before)};
+    for (int j = 0; j < now.mean.size(); ++j) {
+      if (j == i || !(std::abs(now.correlation(i, j)) > std::abs(belief.correlation))) continue;
+      belief.companion = estimator.estimate_name(j);
+      belief.correlation = now.correlation(i, j);
+    }
+    list.push_back(belief);
+  }
+  return list;
+}
 
 Json json_of(const std::vector<Belief>& beliefs, const std::string& scene, int rows) {
   Json estimates = Json::array(), unobserved = Json::array();
   for (const Belief& b : beliefs) {
-    estimates.push(Json::object().set("name", b.name).set("mean", b.mean).set("sd", b.deviation).set("prior_sd", b.prior_deviation));
+    Json estimate = Json::object().set("name", b.name).set("mean", b.mean).set("sd", b.deviation).set("prior_sd", b.prior_deviation);
+    if (b.is_tied()) estimate.set("tied_to", b.companion).set("correlation", b.correlation);
+    estimates.push(estimate);
     if (!b.is_observed()) unobserved.push(b.name);
   }
   return Json::object().set("schema", 1).set("scene", scene).set("rows", rows).set("estimates", estimates).set("not_observed", unobserved);
@@ -93,7 +131,7 @@ std::string text_of(const std::vector<Belief>& beliefs, const std::string& scene
   Table table({"estimate", "mean", "sd", "sd before", ""});
   for (const Belief& b : beliefs) {
     table.add({b.name, fmt::format("{:.6g}", b.mean), fmt::format("{:.3g}", b.deviation), fmt::format("{:.3g}", b.prior_deviation),
-               b.is_observed() ? "" : "not observed: this record says little about it"});
+               b.remark()});
   }
   return fmt::format("{}: {} rows\n{}", scene, rows, table.text());
 }
@@ -103,9 +141,12 @@ std::string text_of(const std::vector<Belief>& beliefs, const std::string& scene
 int run_estimate(const Arguments& arguments) {
   const std::string& scene = arguments.names.front();
   if (arguments.measurements.empty()) throw std::invalid_argument("estimate: no record (expected --measurements FILE.csv)");
-  const ControlTask task = make_task(scene, arguments.set);
-  if (!task.estimator) throw std::invalid_argument(scene + ": has nothing to estimate, its measurements say it all");
-  Estimator& estimator = *task.estimator;
+  ControlTask task = make_task(scene, arguments.set);
+  const std::string solver = arguments.solver.value_or(default_solver());
+  const std::unique_ptr<Estimator> taken =
+      take_estimator(task, [&](const Nlp& problem, const Options& options) { return make_solver(solver, problem, options); });
+  if (!taken) throw std::invalid_argument(scene + ": has nothing to estimate, its measurements say it all");
+  Estimator& estimator = *taken;
   const std::vector<std::string> measured = names_of(task.plant->num_measurements(), [&](int i) { return task.plant->measurement_name(i); });
   const std::vector<std::string> commanded = names_of(task.plant->num_commands(), [&](int i) { return task.plant->command_name(i); });
   const std::vector<std::string> estimated = names_of(estimator.num_estimates(), [&](int i) { return estimator.estimate_name(i); });
@@ -128,20 +169,19 @@ int run_estimate(const Arguments& arguments) {
   }
 
   Cells measurements(record, measured), commands(record, commanded);
-  Vector mean(estimator.num_estimates()), held = Vector::Zero(static_cast<int>(commanded.size()));
+  Vector held = Vector::Zero(static_cast<int>(commanded.size()));
   estimator.reset();
-  const Vector prior = deviations(estimator);
+  const Beliefs prior(estimator);
   for (std::size_t k = 0; k < record.lines.size(); ++k) {
     estimator.update(record["t"][k], measurements.at(k), held);  // a row's command holds from there on
     held = commands.at(k);
     if (!csv) continue;
-    estimator.mean(mean);
+    const Beliefs now(estimator);
     *csv << record["t"][k];
-    for (const double value : mean) *csv << value;
-    for (const double value : deviations(estimator)) *csv << value;
-    const Eigen::MatrixXd covariance = covariance_of(estimator);
-    for (Eigen::Index column = 0; column < covariance.cols(); ++column) {
-      for (Eigen::Index row = column; row < covariance.rows(); ++row) *csv << covariance(row, column);
+    for (const double value : now.mean) *csv << value;
+    for (int i = 0; i < now.mean.size(); ++i) *csv << now.deviation(i);
+    for (Eigen::Index column = 0; column < now.covariance.cols(); ++column) {
+      for (Eigen::Index row = column; row < now.covariance.rows(); ++row) *csv << now.covariance(row, column);
     }
     csv->end_row();
   }
@@ -149,10 +189,7 @@ int run_estimate(const Arguments& arguments) {
   if (csv) write_scenery(belief_scenery(task), output);
   make_report(arguments, {output});
 
-  estimator.mean(mean);
-  const Vector deviation = deviations(estimator);
-  std::vector<Belief> beliefs;
-  for (int i = 0; i < mean.size(); ++i) beliefs.push_back({estimated[static_cast<std::size_t>(i)], mean[i], deviation[i], prior[i]});
+  const std::vector<Belief> beliefs = list_of(estimator, prior);
   if (arguments.json)
     print(json_of(beliefs, scene, record.rows()));
   else if (!arguments.quiet)

@@ -50,6 +50,7 @@ void write_stages(const std::string& path, const HorizonProgram& program, const 
 
 int plan_task(const Arguments& arguments) {
   const ControlTask task = make_task(arguments.names.front(), arguments.set);
+  if (!task.program) throw std::invalid_argument(task.name + ": has nothing to plan, its commands are a script");
   const HorizonProgram& program = *task.program;
   const std::string solver = arguments.solver.value_or(default_solver());
   Observers observers(arguments);

@@ -79,7 +79,7 @@ const std::vector<Verb>& verbs() {
        "SCENE",
        1,
        1,
-       {"measurements", "output", "report", "set", "json", "quiet"},
+       {"measurements", "output", "report", "solver", "set", "json", "quiet"},
        &run_estimate},
       sweep_verb(&run_sweep),
       {"solve",

@@ -1,4 +1,4 @@
-// A task for a receding horizon, as a scene makes it: the world, what looks ahead in it, what estimates, and what to compare with.
+// A task as a scene makes it: the world, what looks ahead in it, what estimates, and what to compare with.
 //
 // The parts know nothing of one another: the program and the estimator are built from what is believed, before any world is drawn.
 #pragma once
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tenon/core/controller.hpp"
+#include "tenon/core/estimation_problem.hpp"
 #include "tenon/core/estimator.hpp"
 #include "tenon/core/horizon_options.hpp"
 #include "tenon/core/horizon_program.hpp"
@@ -39,11 +40,12 @@ struct ControlTask {
   double period = 0;    // s, of the controller
   double duration = 0;  // s, after which a run ends whatever came of it
   std::unique_ptr<Plant> plant;
-  std::unique_ptr<HorizonProgram> program;
-  std::unique_ptr<Estimator> estimator;  // null where the measurements say it all
-  HorizonOptions options;                // how the program is solved, unless the caller says otherwise
+  std::unique_ptr<HorizonProgram> program;        // null where the commands are a script: then the first baseline
+  std::unique_ptr<Estimator> estimator;           // null where the measurements say it all, or `estimation` stands for it
+  std::unique_ptr<EstimationProblem> estimation;  // to be looked back over by a moving horizon
+  HorizonOptions options;                         // how the program is solved, unless the caller says otherwise
   std::vector<Baseline> baselines;
-  std::vector<LinearMode> modes;   // of the inner loop, for its margins of stability
+  std::vector<LinearMode> modes;                  // of the inner loop, for its margins of stability
   std::optional<Capture> capture;
   Scenery scenery;  // its picture, for the record
 };

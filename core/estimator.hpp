@@ -29,6 +29,12 @@ class Estimator {
   virtual void mean(VectorRef values) const = 0;
   virtual void covariance(MatrixRef values) const = 0;
 
+  /// Whether estimate i is positive and known in proportion: its deviation then counts relative to its mean.
+  virtual bool is_known_in_proportion(int i) const {
+    static_cast<void>(i);
+    return false;
+  }
+
   virtual std::string estimate_name(int i) const { return "estimate" + std::to_string(i + 1); }
 };
 

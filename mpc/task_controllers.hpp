@@ -1,4 +1,4 @@
-// The controllers of a task by name: "mpc", its receding horizon, and its baselines.
+// The controllers of a task by name: "mpc", its receding horizon where it has one, and its baselines; and its estimator.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,10 @@
 
 namespace tenon {
 
-/// "mpc", then the baselines.
+/// Takes the task's estimator out of it, or makes the moving horizon of its estimation problem; null where it has neither.
+std::unique_ptr<Estimator> take_estimator(ControlTask& task, const SolverFactory& make_solver);
+
+/// "mpc" where there is a program, then the baselines.
 std::vector<std::string> controller_names(const ControlTask& task);
 
 /// Takes the parts of that controller out of the task. Throws std::invalid_argument for a name that is not known, the nearest named, and

@@ -5,7 +5,9 @@
 
 #include "tenon/core/named_file.hpp"
 #include "tenon/core/nearest_name.hpp"
+#include "tenon/problems/delta_payload/task.hpp"
 #include "tenon/problems/peg_in_hole/task.hpp"
+#include "tenon/problems/pushed_block/task.hpp"
 #include "tenon/problems/soft_walls/task.hpp"
 #include "tenon/problems/touch_down/task.hpp"
 #include "tenon/problems/toml/checked_keys.hpp"
@@ -22,7 +24,9 @@ struct TaskKind {
 };
 
 constexpr TaskKind kKinds[] = {
+    {"delta-payload", &delta_payload::make_task},
     {"peg-in-hole", &peg::make_task},
+    {"pushed-block", &pushed_block::make_task},
     {"soft-walls", &soft_walls::make_task},
     {"touch-down", &touch_down::make_task},
 };

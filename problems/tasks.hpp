@@ -1,6 +1,6 @@
-// Tasks for a receding horizon by name or file: what `tenon mpc SCENE` runs.
+// Tasks by name or file: what `tenon mpc SCENE` runs, a receding horizon or a scripted experiment.
 //
-//     task = "soft-walls" | "touch-down"     which reader takes the file; its keys stand at the scenes that come with tenon
+//     task = "soft-walls" | "pushed-block" | ...     which reader takes the file; its keys stand at the scenes that come with tenon
 //
 // To add a kind: write its `make_task(document)` beside its problem and give it a line in tasks.cpp.
 #pragma once

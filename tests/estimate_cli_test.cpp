@@ -1,6 +1,7 @@
 // tenon estimate and tenon sweep --margins, as a script sees them.
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -75,6 +76,49 @@ TEST_F(EstimateVerb, SaysWhatARecordSaysNothingAbout) {
   const Json result = estimate("air.csv");
   EXPECT_FALSE(result.at("not_observed").elements().empty());
   EXPECT_TRUE(estimate("run.csv").at("not_observed").elements().size() < result.at("not_observed").elements().size());
+}
+
+// A moving horizon from the command line: an experiment that moves nothing, and one whose truth has been scrambled.
+TEST_F(EstimateVerb, SaysThatARestingFingerLearnsNothingOfTheBlock) {
+  ASSERT_EQ(run("mpc pushed-block --set motion=rest --set duration=0.3 --output rest.csv --quiet").code, 0);
+  const Ended ended = run("estimate pushed-block --measurements rest.csv --json");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  std::vector<std::string> unobserved;
+  const Json result = Json::parse(ended.out, "stdout");
+  for (const Json& name : result.at("not_observed").elements()) unobserved.push_back(name.as_text());
+  EXPECT_EQ(unobserved, (std::vector<std::string>{"believed_block", "believed_block_mass", "believed_friction"}));
+}
+
+TEST_F(EstimateVerb, SaysWhichEstimatesAreTiedToOneAnother) {
+  ASSERT_EQ(run("mpc pushed-block --set motion=steady --output steady.csv --quiet").code, 0);
+  const Ended ended = run("estimate pushed-block --measurements steady.csv --output believed.csv");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.out.find("better known together with believed_friction (correlation -0.99"), std::string::npos) << ended.out;
+}
+
+TEST_F(EstimateVerb, AMovingHorizonDoesNotReadTheTruth) {
+  ASSERT_EQ(run("mpc pushed-block --seed 4 --set duration=1.5 --output push.csv --quiet").code, 0);
+  const CsvTable record = read_csv(folder_->path("push.csv"), {{}, {}, true});
+  {
+    CsvWriter csv(folder_->path("scrambled.csv"), record.names);
+    for (std::size_t k = 0; k < record.lines.size(); ++k) {
+      for (const std::string& name : record.names) {
+        const bool is_seen = name == "t" || name == "measured_finger" || name == "force";
+        csv << (is_seen ? record[name][k] : 7.0 + static_cast<double>(k));
+      }
+      csv.end_row();
+    }
+    csv.finish();
+  }
+  EXPECT_EQ(run("estimate pushed-block --measurements push.csv --output one.csv").code, 0);
+  EXPECT_EQ(run("estimate pushed-block --measurements scrambled.csv --output two.csv").code, 0);
+  EXPECT_EQ(folder_->read("one.csv"), folder_->read("two.csv"));
+}
+
+TEST_F(EstimateVerb, AScriptHasNothingToPlan) {
+  const Ended ended = run("plan pushed-block");
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_TRUE(is_one_line(ended.err, "tenon: pushed-block: has nothing to plan, its commands are a script")) << ended.err;
 }
 
 TEST_F(EstimateVerb, RefusesRecordsThatMakeNoSense) {

@@ -5,6 +5,7 @@ namespace tenon {
 void add_allocation(std::vector<Benchmark>& rows);
 void add_contact(std::vector<Benchmark>& rows);
 void add_delta(std::vector<Benchmark>& rows);
+void add_estimate(std::vector<Benchmark>& rows);
 void add_flight(std::vector<Benchmark>& rows);
 void add_envelope(std::vector<Benchmark>& rows);
 void add_linear_allocation(std::vector<Benchmark>& rows);
@@ -25,6 +26,7 @@ std::vector<Benchmark> benchmarks() {
   add_flight(rows);
   add_envelope(rows);
   add_receding_horizon(rows);
+  add_estimate(rows);
   return rows;
 }
 
