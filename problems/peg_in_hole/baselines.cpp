@@ -11,6 +11,7 @@ namespace tenon::peg {
 namespace {
 
 constexpr double kDown = 20;                     // mm/s
+constexpr double kAhead = 0.3 * kDown;           // mm: below the peg its reference goes no farther, as in the horizon's 0.3 s
 constexpr double kTilt = std::numbers::pi / 18;  // rad
 constexpr double kHook = 2.25;                   // mm: how far the tilted peg stands aside, so that its low corner is over the hole
 constexpr double kTurn = 0.6;                    // rad/s
@@ -18,7 +19,9 @@ constexpr double kAside = 15, kLower = 15, kInsert = 30;  // mm/s
 constexpr double kTouch = 1;                     // N
 // mm/s for each N, of x; of phi in the ratio of the springs, so that both give way as fast. Times the damping of the inner loop it must stay well
 // below 1: a rate is felt as a force at once.
-constexpr double kAdmittance = 8;
+constexpr double kInsertAdmittance = 8;
+// The same in x and phi, and limited as the horizon's reference is.
+constexpr double kAdmittance = 20, kLargestRate = 40;  // mm/s for each N, mm/s
 
 /// Towards a goal, no faster than this, and not beyond it within the period.
 double towards(double from, double to, double speed, double period) {
@@ -40,18 +43,24 @@ void ReferenceController::reset() {
   reference_ = start_;
 }
 
-void ReferenceController::update(double t, ConstVectorRef measurements, VectorRef commands) {
+void ReferenceController::update(double, ConstVectorRef measurements, VectorRef commands) {
   const double lever = geometry_.lever;
+  const Vector3d pose = to_millimetres(measurements.segment<3>(kMeasuredPose), lever);
   const Vector3d force(measurements[kMeasuredForce], measurements[kMeasuredForce + 1], 1e3 / lever * measurements[kMeasuredForce + 2]);
-  const Vector3d along = rate(t, reference_, force);
+  const Vector3d along = rate(reference_, pose, force);
   commands.segment<3>(kReference) = to_si(reference_, lever);
   commands.segment<3>(kReferenceRate) = to_si(along, lever);
   commands.segment<3>(kStiffness) = stiffness_to_si(impedance_.stiffness, lever);
   reference_ += period_ * along;
 }
 
-Vector3d StraightDown::rate(double, const Vector3d& reference, const Vector3d&) {
-  return {0, towards(reference[1], -depth_, kDown, period()), 0};
+Vector3d StraightDown::rate(const Vector3d& reference, const Vector3d& pose, const Vector3d&) {
+  return {0, towards(reference[1], std::max(-depth_, pose[1] - kAhead), kDown, period()), 0};
+}
+
+Vector3d Admittance::rate(const Vector3d& reference, const Vector3d& pose, const Vector3d& force) {
+  const auto give = [](double f) { return std::clamp(kAdmittance * f, -kLargestRate, kLargestRate); };
+  return {give(force[0]), StraightDown::rate(reference, pose, force)[1], give(force[2])};
 }
 
 void TiltAndSlide::reset() {
@@ -59,12 +68,12 @@ void TiltAndSlide::reset() {
   phase_ = Phase::lower;
 }
 
-Vector3d TiltAndSlide::rate(double, const Vector3d& reference, const Vector3d& force) {
+Vector3d TiltAndSlide::rate(const Vector3d& reference, const Vector3d&, const Vector3d& force) {
   const double lever = geometry_.lever, theta = reference[2] / lever;
   if (phase_ == Phase::lower && theta > 0.99 * kTilt && force[1] > kTouch) phase_ = Phase::slide;
   if (phase_ == Phase::slide && force[0] > kTouch) phase_ = Phase::upright;
   if (phase_ == Phase::upright && theta <= 0) phase_ = Phase::insert;
-  const double give_x = kAdmittance * force[0], give_phi = kAdmittance * impedance_.stiffness[0] / impedance_.stiffness[2] * force[2];
+  const double give_x = kInsertAdmittance * force[0], give_phi = kInsertAdmittance * impedance_.stiffness[0] / impedance_.stiffness[2] * force[2];
   switch (phase_) {
     case Phase::lower: {
       const double turn = towards(theta, kTilt, kTurn * 1.5, period());
