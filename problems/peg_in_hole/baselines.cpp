@@ -17,15 +17,19 @@ constexpr double kHook = 2.25;                   // mm: how far the tilted peg s
 constexpr double kTurn = 0.6;                    // rad/s
 constexpr double kAside = 15, kLower = 15, kInsert = 30;  // mm/s
 constexpr double kTouch = 1;                     // N
-// mm/s for each N, of x; of phi in the ratio of the springs, so that both give way as fast. Times the damping of the inner loop it must stay well
-// below 1: a rate is felt as a force at once.
-constexpr double kInsertAdmittance = 8;
-// The same in x and phi, and limited as the horizon's reference is.
-constexpr double kAdmittance = 20, kLargestRate = 40;  // mm/s for each N, mm/s
+constexpr double kLargestRate = 40;              // mm/s, of a reference that gives way, as of the horizon's
+// mm/s for each N. Times the damping of the inner loop it must stay well below 1 for a controller of 50 Hz: a rate is felt as a force at once.
+constexpr double kAdmittance = 20, kInsertAdmittance = 8;
 
 /// Towards a goal, no faster than this, and not beyond it within the period.
 double towards(double from, double to, double speed, double period) {
   return std::clamp((to - from) / period, -speed, speed);
+}
+
+/// mm/s of x and phi for each N: phi in the ratio of the springs, so that both give way as fast.
+Vector3d give_way(const Impedance& impedance, double admittance, const Vector3d& force) {
+  const Vector3d& k = impedance.stiffness;
+  return admittance * Vector3d(force[0], 0, k[0] / k[2] * force[2]);
 }
 
 }  // namespace
@@ -59,8 +63,8 @@ Vector3d StraightDown::rate(const Vector3d& reference, const Vector3d& pose, con
 }
 
 Vector3d Admittance::rate(const Vector3d& reference, const Vector3d& pose, const Vector3d& force) {
-  const auto give = [](double f) { return std::clamp(kAdmittance * f, -kLargestRate, kLargestRate); };
-  return {give(force[0]), StraightDown::rate(reference, pose, force)[1], give(force[2])};
+  const Vector3d give = give_way(impedance_, kAdmittance, force).cwiseMax(-kLargestRate).cwiseMin(kLargestRate);
+  return StraightDown::rate(reference, pose, force) + give;
 }
 
 void TiltAndSlide::reset() {
@@ -73,7 +77,7 @@ Vector3d TiltAndSlide::rate(const Vector3d& reference, const Vector3d&, const Ve
   if (phase_ == Phase::lower && theta > 0.99 * kTilt && force[1] > kTouch) phase_ = Phase::slide;
   if (phase_ == Phase::slide && force[0] > kTouch) phase_ = Phase::upright;
   if (phase_ == Phase::upright && theta <= 0) phase_ = Phase::insert;
-  const double give_x = kInsertAdmittance * force[0], give_phi = kInsertAdmittance * impedance_.stiffness[0] / impedance_.stiffness[2] * force[2];
+  const Vector3d give = give_way(impedance_, kInsertAdmittance, force);
   switch (phase_) {
     case Phase::lower: {
       const double turn = towards(theta, kTilt, kTurn * 1.5, period());
@@ -83,9 +87,9 @@ Vector3d TiltAndSlide::rate(const Vector3d& reference, const Vector3d&, const Ve
     case Phase::upright: {
       // about the left corner: q = corner + R(theta) (w/2, 0)
       const double turn = towards(theta, 0, kTurn, period()), half = geometry_.width / 2;
-      return {-half * std::sin(theta) * turn + give_x, half * std::cos(theta) * turn, lever * turn};
+      return {-half * std::sin(theta) * turn + give[0], half * std::cos(theta) * turn, lever * turn};
     }
-    case Phase::insert: return {give_x, towards(reference[1], -depth_, kInsert, period()), give_phi};
+    case Phase::insert: return Vector3d(0, towards(reference[1], -depth_, kInsert, period()), 0) + give;
   }
   return Vector3d::Zero();
 }

@@ -44,7 +44,7 @@ class StraightDown : public ReferenceController {
   Vector3d rate(const Vector3d& reference, const Vector3d& pose, const Vector3d& force) override;
 };
 
-/// The same, giving way to lateral forces and moments by 20 mm/s for each N. Unstable where its period is not far below 20 ms.
+/// The same, giving way to lateral forces and moments by 20 mm/s for each N. At 50 Hz that is unstable: a period of some ms.
 class Admittance final : public StraightDown {
  public:
   using StraightDown::StraightDown;
