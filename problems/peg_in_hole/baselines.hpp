@@ -1,4 +1,5 @@
-// What needs no optimiser: straight down on a spring, and a script that tilts the peg, hooks a corner into the hole, and uprights it.
+// What needs no optimiser: straight down on a spring, the same giving way to forces, and a script that tilts the peg, hooks a corner into the
+// hole, and uprights it.
 //
 // They see and command what the receding horizon does, in the same plant. Description: peg_in_hole.md, section 5.
 #pragma once
@@ -22,8 +23,8 @@ class ReferenceController : public Controller {
   void update(double t, ConstVectorRef measurements, VectorRef commands) override;
 
  protected:
-  /// mm/s of (x, z, phi) for the coming period; `reference` in mm, `force` in N.
-  virtual Vector3d rate(double t, const Vector3d& reference, const Vector3d& force) = 0;
+  /// mm/s of (x, z, phi) for the coming period; `reference` and the measured `pose` in mm, the measured `force` in N.
+  virtual Vector3d rate(const Vector3d& reference, const Vector3d& pose, const Vector3d& force) = 0;
 
   Geometry geometry_;
   Impedance impedance_;
@@ -34,13 +35,22 @@ class ReferenceController : public Controller {
   double period_;
 };
 
-/// Down at 20 mm/s.
-class StraightDown final : public ReferenceController {
+/// Down at 20 mm/s, the reference receding from the measured depth.
+class StraightDown : public ReferenceController {
  public:
   using ReferenceController::ReferenceController;
 
+ protected:
+  Vector3d rate(const Vector3d& reference, const Vector3d& pose, const Vector3d& force) override;
+};
+
+/// The same, giving way to lateral forces and moments by 20 mm/s for each N. At 50 Hz that is unstable: a period of some ms.
+class Admittance final : public StraightDown {
+ public:
+  using StraightDown::StraightDown;
+
  private:
-  Vector3d rate(double t, const Vector3d& reference, const Vector3d& force) override;
+  Vector3d rate(const Vector3d& reference, const Vector3d& pose, const Vector3d& force) override;
 };
 
 /// Tilted by 10 degrees, the left corner over the hole whatever the offset; down until something pushes; aside until the corner is at the
@@ -52,7 +62,7 @@ class TiltAndSlide final : public ReferenceController {
 
  private:
   enum class Phase { lower, slide, upright, insert };
-  Vector3d rate(double t, const Vector3d& reference, const Vector3d& force) override;
+  Vector3d rate(const Vector3d& reference, const Vector3d& pose, const Vector3d& force) override;
 
   Phase phase_ = Phase::lower;
 };

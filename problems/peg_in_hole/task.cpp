@@ -1,5 +1,6 @@
 #include "tenon/problems/peg_in_hole/task.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "tenon/problems/delta/robot_file.hpp"
@@ -19,8 +20,9 @@ namespace {
 
 using toml_file::Table;
 
-constexpr double kMillimetre = 1e-3;   // m
-constexpr double kInnerPeriod = 1e-3;  // s, of the impedance loop
+constexpr double kMillimetre = 1e-3;        // m
+constexpr double kInnerPeriod = 1e-3;       // s, of the impedance loop
+constexpr double kAdmittancePeriod = 2e-3;  // s, at most: at 20 ms it is unstable
 
 std::optional<Table> plant_table(const Table& root) {
   return root.table("plant", {"mass", "contact_stiffness", "contact_damping_ratio", "encoder_noise", "force_noise", "clearance", "delay",
@@ -130,6 +132,8 @@ ControlTask make_task(const toml_file::Document& document) {
   const Impedance soft{.stiffness = {0.5, 1, 2.5}};
   task.baselines.push_back({"straight", std::make_unique<StraightDown>(believed, problem.impedance, world.start, problem.depth, task.period)});
   task.baselines.push_back({"soft", std::make_unique<StraightDown>(believed, soft, world.start, problem.depth, task.period)});
+  const double fast = std::min(task.period, kAdmittancePeriod);
+  task.baselines.push_back({"admittance", std::make_unique<Admittance>(believed, problem.impedance, world.start, problem.depth, fast)});
   task.baselines.push_back({"tilt", std::make_unique<TiltAndSlide>(believed, problem.impedance, world.start, problem.depth, task.period)});
   task.modes = linear_modes(world, problem.impedance, kInnerPeriod, holder ? kInnerPeriod : 0);
   task.capture = {"offset of the hole, m", kMillimetre * 5, [world, holder](double offset) {
