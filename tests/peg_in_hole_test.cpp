@@ -8,7 +8,6 @@
 #include "tenon/mpc/task_controllers.hpp"
 #include "tenon/problems/peg_in_hole/assembly_program.hpp"
 #include "tenon/problems/peg_in_hole/channels.hpp"
-#include "tenon/problems/peg_in_hole/hole_estimator.hpp"
 #include "tenon/problems/peg_in_hole/plant.hpp"
 #include "tenon/problems/tasks.hpp"
 #include "tenon/tests/allocation_counter.hpp"
@@ -170,23 +169,17 @@ TEST(PegProgram, AsksForAFreshStartOnceThePegIsJammed) {
 struct Outcome {
   bool success;
   double time, first_touch, sustained;
-  Vector3d estimate_error;  // mm, mm, mm of phi
-  double normalised_error;  // squared, of as many numbers as are uncertain
   long fallbacks = 0, ticks = 0;
 };
 
-std::vector<Outcome> run(const std::string& scene, const std::string& name, int samples, const std::vector<std::string>& overrides = {}, int first = 1) {
+std::vector<Outcome> run(const std::string& scene, const std::string& name, int samples, const std::vector<std::string>& overrides = {}) {
   ControlTask task = tenon::make_task(scene, overrides);
   const auto controller = take_controller(task, name, newton_kkt);
   ClosedLoop loop(*task.plant, *controller, task.duration);
-  const std::vector<std::string> columns = loop.columns();
-  const auto at = std::ranges::find(columns, "estimate_hole_x") - columns.begin();
   std::vector<Outcome> outcomes;
-  for (int seed = first; seed < first + samples; ++seed) {
+  for (int seed = 1; seed <= samples; ++seed) {
     Outcome out{};
-    Vector last;
-    loop.run(static_cast<std::uint64_t>(seed), [&](const Vector& row) {
-      last = row;
+    loop.run(static_cast<std::uint64_t>(seed), [&](const Vector&) {
       ++out.ticks;
       out.fallbacks += controller->last_step().fell_back();
       return true;
@@ -195,14 +188,6 @@ std::vector<Outcome> run(const std::string& scene, const std::string& name, int 
     task.plant->verdicts(verdicts);
     out.success = verdicts[3] == 1;
     out.time = verdicts[4], out.first_touch = verdicts[5], out.sustained = verdicts[6];
-    if (name == "mpc") {
-      const Vector3d error = last.segment<3>(at) - verdicts.head<3>();
-      Matrix3d covariance;
-      const auto c = last.segment<6>(at + 3);
-      covariance << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
-      out.estimate_error = to_millimetres(error, 20);
-      out.normalised_error = error.dot(covariance.inverse() * error);
-    }
     outcomes.push_back(out);
   }
   return outcomes;
@@ -256,48 +241,6 @@ TEST(PegLoop, TheTiltScriptNeverFailsAndSoftSpringsSeldom) {
   EXPECT_TRUE(std::ranges::all_of(tilt, &Outcome::success));
   EXPECT_LE(quantile(tilt, 1, [](const Outcome& o) { return o.sustained; }), 7);
   EXPECT_GE(std::ranges::count_if(soft, &Outcome::success), 38);
-}
-
-TEST(HoleEstimator, KnowsTheHoleOnceThePegIsInIt) {
-  const std::vector<Outcome> outcomes = run("peg-in-hole", "mpc", 30);
-  EXPECT_LE(quantile(outcomes, 0.5, [](const Outcome& o) { return std::abs(o.estimate_error[0]); }), 0.05);
-  EXPECT_LE(quantile(outcomes, 0.5, [](const Outcome& o) { return std::abs(o.estimate_error[2]); }), 0.07) << "0.2 degrees";
-}
-
-// The expected value of the normalised error squared is the number of unknowns: 3 here. Three times that is what an estimator that is certain
-// of wrong places would exceed, a third what one that never dares to say anything would stay below.
-TEST(HoleEstimator, IsAsSureAsItIsRight) {
-  const std::vector<Outcome> outcomes = run("peg-in-hole-tight", "mpc", 30);
-  double mean = 0;
-  for (const Outcome& out : outcomes) mean += out.normalised_error / static_cast<double>(outcomes.size());
-  EXPECT_LE(mean, 6);
-  EXPECT_GE(mean, 1);
-  EXPECT_LE(quantile(outcomes, 1, [](const Outcome& o) { return o.normalised_error; }), 25) << "certain of a wrong place";
-}
-
-// In these worlds the peg lands on the flat of a low hole, and a wall of a high one would explain the same position.
-TEST(HoleEstimator, DoesNotMistakeAFlatForAWall) {
-  for (const int world : {124, 300}) {
-    SCOPED_TRACE(world);
-    const Outcome out = run("peg-in-hole-tight", "mpc", 1, {}, world).front();
-    EXPECT_TRUE(out.success);
-    EXPECT_LE(out.normalised_error, 25);
-  }
-}
-
-TEST(HoleEstimator, KeepsItsPriorWhereNothingWasLearnt) {
-  HoleEstimatorOptions options;
-  options.prior.half_width = {2, 0.5, 0.7};
-  options.cells = {41, 11, 21};
-  HoleEstimator estimator(options);
-  Vector before(3), after(3);
-  Eigen::MatrixXd prior(3, 3), posterior(3, 3);
-  estimator.mean(before), estimator.covariance(prior);
-  const Vector y = measured({0, 5, 0}, {0, 5, 0}, {0, 0, 0});
-  for (int tick = 0; tick < 100; ++tick) estimator.update(0.02 * tick, y, Vector::Zero(kCommands));
-  estimator.mean(after), estimator.covariance(posterior);
-  EXPECT_EQ(before, after);
-  EXPECT_EQ(prior(0, 0), posterior(0, 0));
 }
 
 /// What a controller was told and what it said.

@@ -1,15 +1,14 @@
 // Where the hole is, from where the peg could be and what pushed it there: Bayes' rule on a grid over (x, z, theta) of its mouth.
 //
-//     log w  +=  -e / (2 sigma^2),     e = min(0, smallest gap)^2 + [a side pushes] 0.3 min(1/2 mm, max(0, smallest gap of that side))^2 + ...
+//     log w  +=  -gain e,     e: ContactEvidence's, gain = ticks of 20 ms
 //
-// The peg cannot be inside a block, what pushes is near, and it pushes at right angles to its face but for friction. Old evidence fades, the
-// prior does not. Equations: peg_in_hole.md, section 4.
+// Old evidence fades, the prior does not. Equations: peg_in_hole.md, section 4.
 #pragma once
 
 #include <vector>
 
 #include "tenon/core/estimator.hpp"
-#include "tenon/problems/peg_in_hole/geometry.hpp"
+#include "tenon/problems/peg_in_hole/contact_evidence.hpp"
 #include "tenon/problems/peg_in_hole/plant.hpp"
 
 namespace tenon::peg {
@@ -18,8 +17,7 @@ struct HoleEstimatorOptions {
   Geometry geometry;
   HolePrior prior;
   Eigen::Array3i cells{61, 1, 31};  // x, z, theta
-  double sigma = 0.06;              // mm: what a gap is uncertain by
-  double least_deviation = 0.04;    // mm: never surer than this
+  double least_deviation = 0.02;    // mm: never surer than this
 };
 
 class HoleEstimator final : public Estimator {
@@ -35,15 +33,14 @@ class HoleEstimator final : public Estimator {
   std::string estimate_name(int i) const override;
 
  private:
-  /// Adds to the evidence against every cell: penetration; distance of the side that pushes, and a direction that its face cannot push in.
-  void weigh(const Vector3d& pose, const Vector3d& force, double gain);
   void summarise();
 
   HoleEstimatorOptions options_;
   Eigen::ArrayXf x_, z_, phi_;           // mm, the middle of the cells
   Eigen::ArrayXXf evidence_;             // against a cell; columns: x, all z of the first phi, all z of the next ...
   Eigen::ArrayXXf prior_;
-  Eigen::ArrayXf left_, right_, direction_, weight_;  // of one column
+  ContactEvidence contacts_;
+  Eigen::ArrayXf weight_;                // of one column
   Vector3d mean_;
   Matrix3d covariance_;
   double last_ = 0;
