@@ -43,7 +43,8 @@ void apply(const Arguments& arguments, HorizonOptions& options) {
   options.warm = arguments.options(options.warm);
   const int cold_iterations = options.cold.max_iterations;
   options.cold = arguments.options(options.cold);
-  options.cold.max_iterations = cold_iterations;  // a first plan is not to be had in an iteration or two
+  options.cold.max_iterations = cold_iterations;  // a plan from nothing is not to be had in an iteration or two
+  options.ahead.tolerance = options.cold.tolerance;
 }
 
 class MpcRun {

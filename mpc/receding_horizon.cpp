@@ -30,8 +30,9 @@ RecedingHorizon::RecedingHorizon(std::unique_ptr<HorizonProgram> program, std::u
       warm_(make_solver(*program_, options.warm)),
       largest_violation_(options.largest_violation),
       period_(period),
-      plan_(program_->num_variables(), program_->num_constraints()),
-      trial_(plan_),
+      ahead_(program_->num_variables(), program_->num_constraints()),
+      plan_(ahead_),
+      trial_(ahead_),
       estimates_(Vector::Zero(program_->num_estimates())),
       commands_(Vector::Zero(program_->num_commands())),
       covariance_(Eigen::MatrixXd::Zero(estimates_.size(), estimates_.size())) {
@@ -41,6 +42,7 @@ RecedingHorizon::RecedingHorizon(std::unique_ptr<HorizonProgram> program, std::u
   }
   check("estimates", estimator_ ? estimator_->num_estimates() : 0, program_->num_estimates());
   if (estimator_) check("the estimator's measurements", estimator_->num_measurements(), program_->num_measurements());
+  plan_ahead(make_solver, options.ahead);
   reset();
 }
 
@@ -53,9 +55,18 @@ void RecedingHorizon::reset() {
     estimator_->covariance(covariance_);
   }
   commands_.setZero();
+  plan_ = ahead_;
+  basis_ = has_ahead_ ? Basis::expectation : Basis::nothing;
   start_ = 0;
-  has_plan_ = failed_ = false;
+  failed_ = false;
   log_ = {};
+}
+
+void RecedingHorizon::plan_ahead(const SolverFactory& make_solver, const Options& options) {
+  const std::unique_ptr<Solver> solver = make_solver(*program_, options);
+  start_afresh(trial_);
+  has_ahead_ = is_usable(solve(*solver));
+  if (has_ahead_) ahead_ = trial_;
 }
 
 void RecedingHorizon::update(double t, ConstVectorRef measurements, VectorRef commands) {
@@ -77,10 +88,11 @@ void RecedingHorizon::estimate(double t, ConstVectorRef measurements) {
   estimator_->covariance(covariance_);
 }
 
-/// Until the plan's first stage is the one that holds t.
+/// Until the plan's first stage is the one that holds t. What was expected is expected of the first tick, whenever that is.
 void RecedingHorizon::shift_to(double t) {
+  if (basis_ != Basis::measurement) start_ = t;
   const double interval = program_->interval();
-  while (has_plan_ && t - start_ > (1 - kRounding) * interval) {
+  while (t - start_ > (1 - kRounding) * interval) {
     shift_plan(stages_, plan_);
     start_ += interval;
   }
@@ -93,13 +105,22 @@ void RecedingHorizon::start_afresh(Point& plan) const {
 }
 
 Result RecedingHorizon::solve_from_guess() {
-  const bool cold = !has_plan_ || failed_ || program_->wants_fresh_start();
-  if (cold)
-    start_afresh(trial_);
-  else
+  int iterations = 0;
+  if (basis_ != Basis::nothing && !failed_ && !program_->wants_fresh_start()) {
     trial_ = plan_;
+    const Result warm = solve(*warm_);
+    if (basis_ == Basis::measurement || is_usable(warm)) return warm;
+    iterations = warm.iterations;  // the plant is not where it was expected
+  }
+  start_afresh(trial_);
+  Result cold = solve(*cold_);
+  cold.iterations += iterations;
+  return cold;
+}
+
+Result RecedingHorizon::solve(Solver& solver) {
   try {
-    return (cold ? cold_ : warm_)->solve(trial_);
+    return solver.solve(trial_);
   } catch (const std::invalid_argument&) {  // bounds that cross: what was observed makes no sense
     Result result;
     result.status = Status::invalid_start;
@@ -108,13 +129,17 @@ Result RecedingHorizon::solve_from_guess() {
   }
 }
 
+bool RecedingHorizon::is_usable(const Result& result) const {
+  return result.residual.primal <= largest_violation_ && trial_.x.allFinite();
+}
+
 void RecedingHorizon::accept(double t, const Result& result) {
   log_ = {result.status, result.iterations, result.residual.primal, PlanSource::solved, 0};
-  failed_ = !(result.residual.primal <= largest_violation_ && trial_.x.allFinite());
+  failed_ = !is_usable(result);
   if (!failed_) {
     std::swap(plan_, trial_);
     if (!succeeded(result.status)) log_.source = PlanSource::iterate;
-  } else if (has_plan_) {
+  } else if (basis_ == Basis::measurement) {
     log_.source = PlanSource::shifted;
     return;
   } else {
@@ -122,7 +147,7 @@ void RecedingHorizon::accept(double t, const Result& result) {
     log_.source = PlanSource::initial;
   }
   start_ = t;
-  has_plan_ = true;
+  basis_ = Basis::measurement;
 }
 
 int RecedingHorizon::num_outputs() const {

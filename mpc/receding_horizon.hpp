@@ -4,6 +4,10 @@
 //
 // A plan whose rows hold well enough is used, however its solve ended; else the plan before, shifted, is used further, and the next solve
 // starts afresh. So an infeasible horizon, a deadline or a solve gone wrong never leaves the plant without commands.
+//
+// A controller plans before it is switched on: the first tick goes on from a plan made for what the program knows when it is built, where
+// the plant is expected to start and what is believed of it. Where the plant is elsewhere, so that no use can be made of that plan, the
+// first tick starts afresh.
 #pragma once
 
 #include <memory>
@@ -19,6 +23,7 @@ namespace tenon {
 class RecedingHorizon final : public Controller {
  public:
   /// `estimator` may be null. `period` (s) is that of the ticks: at most a stage of the program, which is shifted once a stage has passed.
+  /// Plans ahead for the program as it is given.
   /// Throws std::invalid_argument where the parts do not fit together, and what the factory throws.
   RecedingHorizon(std::unique_ptr<HorizonProgram> program, std::unique_ptr<Estimator> estimator, const SolverFactory& make_solver,
                   const HorizonOptions& options, double period);
@@ -41,10 +46,16 @@ class RecedingHorizon final : public Controller {
   double plan_start() const { return start_; }
 
  private:
+  /// What the plan in use was made for.
+  enum class Basis { nothing, expectation, measurement };
+
+  void plan_ahead(const SolverFactory& make_solver, const Options& options);
   void estimate(double t, ConstVectorRef measurements);
   void shift_to(double t);
   void start_afresh(Point& plan) const;
   Result solve_from_guess();
+  Result solve(Solver& solver);
+  bool is_usable(const Result& result) const;
   void accept(double t, const Result& result);
 
   std::unique_ptr<HorizonProgram> program_;
@@ -53,9 +64,10 @@ class RecedingHorizon final : public Controller {
   std::unique_ptr<Solver> cold_, warm_;
   double largest_violation_, period_;
 
-  Point plan_, trial_;
+  Point ahead_, plan_, trial_;
   double start_ = 0;
-  bool has_plan_ = false, failed_ = false;
+  bool has_ahead_ = false, failed_ = false;
+  Basis basis_ = Basis::nothing;
   Vector estimates_, commands_;
   Eigen::MatrixXd covariance_;
   StepLog log_;

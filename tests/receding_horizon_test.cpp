@@ -124,9 +124,11 @@ struct Script {
 
 class Decisions : public testing::Test {
  protected:
-  RecedingHorizon& make(std::deque<Ending> endings, double period = kInterval) {
-    script_.endings = std::move(endings);
+  /// Of the plan made ahead no use can be made, unless it is given: the first tick begins from nothing.
+  RecedingHorizon& make(std::deque<Ending> endings, double period = kInterval, const Ending& ahead = {Status::infeasible, 1}) {
+    script_.endings = {ahead};
     controller_ = std::make_unique<RecedingHorizon>(std::make_unique<Walk>(), nullptr, script_.factory(), HorizonOptions(), period);
+    script_ = {std::move(endings)};
     return *controller_;
   }
   double update(double t, double x = 0) {
@@ -230,6 +232,34 @@ TEST_F(Decisions, AfterAResetItIsAsIfJustBuilt) {
   controller.reset();
   EXPECT_EQ(update(0, 5), 5);
   EXPECT_EQ(script_.was_warm.back(), false);
+}
+
+TEST_F(Decisions, TheFirstTickGoesOnFromThePlanMadeAhead) {
+  auto& controller = make({{Status::solved, 0, 200}, {Status::solved, 0, 200}}, kInterval, {Status::solved, 0, 100});
+  for (int run = 0; run < 2; ++run) {
+    controller.reset();
+    EXPECT_EQ(update(5), 201) << "whenever the first tick is, the plan made ahead is for it";
+    EXPECT_EQ(script_.starts.back().x[0], 100);
+    EXPECT_EQ(script_.starts.back().lambda, Vector::Constant(4, 100));
+    EXPECT_EQ(controller.plan_start(), 5);
+    EXPECT_EQ(controller.last_step().iterations, 7) << "what was planned ahead is no part of a tick";
+  }
+  EXPECT_EQ(script_.was_warm, (std::vector<bool>{true, true}));
+}
+
+TEST_F(Decisions, WhereThePlantIsNotWhereItWasExpectedTheFirstTickStartsAfresh) {
+  const auto& controller = make({{Status::iteration_limit, 1, 200}, {Status::solved, 0, 300}}, kInterval, {Status::solved, 0, 100});
+  EXPECT_EQ(update(0, 3), 301);
+  EXPECT_EQ(script_.was_warm, (std::vector<bool>{true, false}));
+  EXPECT_EQ(script_.starts[1].x, Vector::Constant(9, 3));
+  EXPECT_EQ(controller.last_step().source, PlanSource::solved);
+  EXPECT_EQ(controller.last_step().iterations, 14) << "of both solves";
+}
+
+TEST_F(Decisions, ThePlanMadeAheadIsNeverCommandedToAPlantItWasNotMadeFor) {
+  const auto& controller = make({{Status::infeasible, 1}, {Status::infeasible, 1}}, kInterval, {Status::solved, 0, 100});
+  EXPECT_EQ(update(0, 5), 5) << "the initial point of what was observed";
+  EXPECT_EQ(controller.last_step().source, PlanSource::initial);
 }
 
 TEST_F(Decisions, APeriodLongerThanAStageIsRefused) {

@@ -12,7 +12,7 @@ namespace tenon::peg {
 namespace {
 
 constexpr double kUnitOfRate = 100;  // mm/s
-constexpr double kForceGuess = 0.1;  // N
+constexpr double kLateralShare = 0.5;  // of the largest rate: how fast the initial point goes to the hole's axis
 constexpr double kProgress = 0.5, kPatience = 0.15;  // mm, s: less than so much in so long is a jam
 
 }  // namespace
@@ -165,17 +165,32 @@ double AssemblyProgram::wanted_height(int k) const {
 
 void AssemblyProgram::initial_point(VectorRef x) const {
   x.setZero();
-  for (int k = 0; k <= problem_.intervals; ++k) {
-    const double rate = k == 0 ? 0 : (wanted_height(k) - wanted_height(k - 1)) / step_;
-    auto stage = x.segment(kStage * k, kStates);
-    stage.segment<3>(kPose) << pose_[0], wanted_height(k), pose_[2];
-    stage.segment<3>(kVelocity) = k == 0 ? velocity_ : Vector3d(0, rate, 0);
-    stage.segment<3>(kSpring) = spring_;
-    stage.segment<3>(kRate) = k == 0 ? rate_ : Vector3d(0, rate, 0);
+  Vector3d pose = pose_, velocity = velocity_, spring = spring_, rate = rate_;
+  for (int k = 0;; ++k) {
+    x.segment<kStates>(kStage * k) << pose, velocity, spring, rate;
     if (k == problem_.intervals) break;
-    x[kStage * k + kNext + 1] = (wanted_height(k + 1) - wanted_height(k)) / step_;
-    x.segment<kContacts>(kStage * k + kForces).setConstant(kForceGuess);
+    const Vector3d next = next_on_the_way(pose), end_rate = (next - pose) / step_;
+    const Vector3d force = inertia_.cwiseProduct(end_rate - velocity);                                      // (2.2), nothing touches
+    const Vector3d end_spring = keep_.cwiseProduct(spring) + yield_.cwiseProduct(force);                    // (2.3)
+    x.segment<3>(kStage * k + kNext) = end_rate;
+    rate = (end_spring - spring) / step_ + end_rate;                                                        // (2.4)
+    pose = next, velocity = end_rate, spring = end_spring;
   }
+}
+
+Vector3d AssemblyProgram::next_on_the_way(const Vector3d& pose) const {
+  const double reach = kLateralShare * problem_.largest_rate * problem_.interval;
+  Vector3d next = pose;
+  bool is_above_hole = true;
+  for (const int axis : {0, 2}) {
+    const double away = lateral_[axis] - pose[axis];
+    next[axis] += std::clamp(away, -reach, reach);
+    is_above_hole = is_above_hole && std::abs(away) <= reach;
+  }
+  const Vector3d lower(next[0], std::max(pose[1] - problem_.speed * problem_.interval, hole_[1] - problem_.depth), next[2]);
+  const auto gaps = exact_gaps(problem_.geometry, lower, hole_);
+  const bool is_free = std::ranges::all_of(gaps, [](const ExactGap& gap) { return gap.value >= 0; });
+  return is_above_hole || is_free ? lower : next;
 }
 
 std::string AssemblyProgram::variable_name(int i) const {

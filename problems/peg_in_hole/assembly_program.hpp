@@ -62,7 +62,7 @@ class AssemblyProgram final : public HorizonProgram {
   SparsePattern hessian_pattern() const override;
   void bounds(Bounds& bounds) const override;
 
-  /// The peg sweeps straight down at the speed asked for, through whatever is in its way.
+  /// The peg goes to the hole's axis, and down at the speed asked for wherever that is free; above the hole, down whatever is in its way.
   void initial_point(VectorRef x) const override;
   Workspace make_workspace() const override;
   void prepare(ConstVectorRef x, Workspace& workspace) const override;
@@ -86,6 +86,7 @@ class AssemblyProgram final : public HorizonProgram {
   struct Contacts;
   struct Interval;
   double wanted_height(int k) const;
+  Vector3d next_on_the_way(const Vector3d& pose) const;
   void watch_progress(double t);
 
   AssemblyProblem problem_;

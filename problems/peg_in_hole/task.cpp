@@ -23,6 +23,7 @@ using toml_file::Table;
 constexpr double kMillimetre = 1e-3;        // m
 constexpr double kInnerPeriod = 1e-3;       // s, of the impedance loop
 constexpr double kAdmittancePeriod = 2e-3;  // s, at most: at 20 ms it is unstable
+constexpr int kColdIterations = 6;
 
 std::optional<Table> plant_table(const Table& root) {
   return root.table("plant", {"mass", "contact_stiffness", "contact_damping_ratio", "encoder_noise", "force_noise", "clearance", "delay",
@@ -120,13 +121,16 @@ ControlTask make_task(const toml_file::Document& document) {
   task.program = std::make_unique<AssemblyProgram>(problem);
   task.estimator = std::make_unique<HoleEstimator>(belief);
   // The rows are well scaled as they are; a plan that is 0.5 mm or N off still moves the peg the right way.
-  for (Options* options : {&task.options.warm, &task.options.cold}) {
+  for (Options* options : task.options.all()) {
     options->tolerance = 1e-4;
     options->scaling = false;
   }
+  task.options.ahead.max_iterations = 100;
   task.options.warm.initial_mu = 1e-4;
   task.options.warm.max_iterations = positive_integer(parameters, "iterations", 1);
-  task.options.cold.max_iterations = 100;
+  // The initial point is free of the walls, and near enough for a small barrier parameter: a few iterations make a plan of it.
+  task.options.cold = task.options.warm;
+  task.options.cold.max_iterations = std::max(kColdIterations, task.options.warm.max_iterations);
   task.options.largest_violation = 0.5;
 
   const Impedance soft{.stiffness = {0.5, 1, 2.5}};

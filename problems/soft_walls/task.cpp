@@ -100,12 +100,12 @@ ControlTask make_task(const toml_file::Document& document) {
   const int intervals = positive_integer(parameters, "intervals", 10);
   task.program = std::make_unique<Horizon>(model, weights, intervals, positive(parameters, "rounding", 2e-3), start);
   // No inequality stands in this program: each iteration is a Newton step, and the rows are well scaled as they are.
-  for (Options* options : {&task.options.warm, &task.options.cold}) {
+  for (Options* options : task.options.all()) {
     options->tolerance = 1e-6;
     options->scaling = false;
   }
   task.options.warm.max_iterations = 20;
-  task.options.cold.max_iterations = 100;
+  task.options.ahead.max_iterations = task.options.cold.max_iterations = 100;
   task.baselines.push_back({.name = "lqr", .controller = std::make_unique<LinearQuadraticRegulator>(model, weights)});
   task.scenery = scenery_of(model.parameters(), intervals);
   return task;

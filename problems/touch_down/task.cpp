@@ -98,12 +98,12 @@ ControlTask make_task(const toml_file::Document& document) {
   task.plant = std::make_unique<PlanePlant>(world);
   task.program = std::make_unique<Horizon>(parameters, world.start, knowledge.plane - knowledge.uncertainty);
   task.estimator = std::make_unique<PlaneEstimator>(knowledge);
-  for (Options* options : {&task.options.warm, &task.options.cold}) {
+  for (Options* options : task.options.all()) {
     options->tolerance = 1e-4;  // in cm, dm/s, N and N cm: a micrometre, 10 um/s, 0.1 mN
     options->scaling = false;
   }
   task.options.warm.max_iterations = 30;
-  task.options.cold.max_iterations = 300;
+  task.options.ahead.max_iterations = task.options.cold.max_iterations = 300;
   task.options.largest_violation = 1e-2;
   const TrackingLaw::Settings tracking{.start = world.start, .plane = world.plane, .pole = parameters.pole, .mass = world.mass,
                                        .force = world.wanted_force, .largest_input = parameters.largest_input, .period = task.period};
