@@ -68,6 +68,20 @@ TEST_F(EstimateVerb, DoesNotReadTheTruth) {
   EXPECT_EQ(folder_->read("one.csv"), folder_->read("two.csv"));
 }
 
+TEST_F(EstimateVerb, ItsReportHasTheBeliefOfEveryRowAndNoTruth) {
+  const Ended ended = run("estimate peg-in-hole --measurements run.csv --report believed.html");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_TRUE(folder_->has("believed.html"));
+  const CsvTable record = read_csv(folder_->path("run.csv"), {{}, {}, true}), believed = read_csv(folder_->path("believed.csv"));
+  const std::string covariance = "cov_estimate_hole_x_estimate_hole_theta";
+  EXPECT_EQ(believed[covariance], record[covariance]);
+  const Json scenery = Json::parse(folder_->read("believed.scene.json"), "believed.scene.json");
+  EXPECT_EQ(scenery.at("bodies").elements().size(), 0u);
+  ASSERT_EQ(scenery.at("estimates").elements().size(), 1u);
+  EXPECT_EQ(scenery.at("estimates").elements()[0].at("across").at("mean").as_text(), "estimate_hole_x");
+  EXPECT_FALSE(scenery.at("estimates").elements()[0].at("across").has("truth"));
+}
+
 TEST_F(EstimateVerb, SaysWhatARecordSaysNothingAbout) {
   const std::string text = folder_->read("run.csv");
   std::size_t end = 0;

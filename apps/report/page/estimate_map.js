@@ -9,7 +9,7 @@ import {element, whenSeen} from "./element.js";
 import {number, prefixed} from "./format.js";
 import {lastRowAt} from "./table.js";
 import {color, onThemeChange} from "./theme.js";
-import {ticks} from "./ticks.js";
+import {ticks, tickTexts} from "./ticks.js";
 
 const kHeight = 250;
 const kMargin = {left: 58, right: 10, top: 8, bottom: 36};
@@ -106,16 +106,18 @@ export class EstimateMap {
       context.stroke();
     };
     context.textAlign = "center";
-    for (const v of ticks(x.low, x.high, Math.max(2, Math.floor(inner.width / 55)))) {
+    const along = ticks(x.low, x.high, Math.max(2, Math.floor(inner.width / 55))), up = ticks(y.low, y.high, 6);
+    const alongTexts = tickTexts(along, scales[0].factor), upTexts = tickTexts(up, scales[1].factor);
+    along.forEach((v, i) => {
       line(toX(v), kMargin.top, toX(v), kMargin.top + inner.height);
-      context.fillText(number(v * scales[0].factor, 3), toX(v), kMargin.top + inner.height + 14);
-    }
+      context.fillText(alongTexts[i], toX(v), kMargin.top + inner.height + 14);
+    });
     context.fillText(across, kMargin.left + inner.width / 2, kHeight - 5);
     context.textAlign = "right";
-    for (const v of ticks(y.low, y.high, 6)) {
+    up.forEach((v, i) => {
       line(kMargin.left, toY(v), kMargin.left + inner.width, toY(v));
-      context.fillText(number(v * scales[1].factor, 3), kMargin.left - 6, toY(v) + 4);
-    }
+      context.fillText(upTexts[i], kMargin.left - 6, toY(v) + 4);
+    });
     context.save();
     context.translate(11, kMargin.top + inner.height / 2);
     context.rotate(-Math.PI / 2);

@@ -7,6 +7,7 @@ import {bandPlugin, lanesOf, lanesPlugin, laneHeight} from "./modes.js";
 import {bandRange, confidencePlugin, eventsPlugin, foreseenRange, foresightPlugin, limitsPlugin} from "./overlays.js";
 import {lastRowAt} from "./table.js";
 import {color, kSeriesColors, onThemeChange, seriesColor} from "./theme.js";
+import {tickTexts} from "./ticks.js";
 import {largestOf, shownUnit} from "./units.js";
 
 const kHeight = 158;
@@ -47,11 +48,7 @@ export function logAxis(extra = {}) {
 
 const kLabelSize = 58;
 
-/// As many digits as tell neighbours apart.
-const labels = (factor = 1) => ({size: kLabelSize, values: (_, splits) => {
-  const step = Math.abs(splits[1] - splits[0]) || 1, digits = 1 + Math.ceil(Math.log10(Math.max(...splits.map(Math.abs)) / step + 1e-9));
-  return splits.map((v) => (v === null ? "" : number(v * factor, Math.max(4, Math.min(9, digits)))));
-}});
+const labels = (factor = 1) => ({size: kLabelSize, values: (_, splits) => tickTexts(splits, factor, 4)});
 
 export class Plots {
   /// `groups` as groups.js makes them; `events` [{t, text}].

@@ -1,8 +1,8 @@
 // Where runs succeeded: each a dot over two quantities, and the rate of success as a tint of the cells between.
 import {element} from "./element.js";
-import {number, prefixed} from "./format.js";
+import {prefixed} from "./format.js";
 import {color} from "./theme.js";
-import {ticks} from "./ticks.js";
+import {ticks, tickTexts} from "./ticks.js";
 import {largestOf, unitOf} from "./units.js";
 
 const kMargin = {left: 62, right: 12, top: 8, bottom: 38};
@@ -32,7 +32,7 @@ export function makeSuccessMap(label, onPoint) {
   return canvas;
 }
 
-/// `across` and `upward` are {name, values}; success[k] > 0 where run k succeeded.
+/// `across` and `upward` are {name, values, all}: of the runs, and of all whose maps share the axes; success[k] > 0 where run k succeeded.
 export function drawSuccessMap(canvas, across, upward, success) {
   const ratio = window.devicePixelRatio, width = canvas.clientWidth, height = canvas.clientHeight;
   if (width === 0) return;
@@ -40,7 +40,7 @@ export function drawSuccessMap(canvas, across, upward, success) {
   canvas.height = height * ratio;
   const context = canvas.getContext("2d");
   context.scale(ratio, ratio);
-  const x = across.values, y = upward.values, [x0, x1] = limits(x), [y0, y1] = limits(y);
+  const x = across.values, y = upward.values, [x0, x1] = limits(across.all), [y0, y1] = limits(upward.all);
   const inner = {width: width - kMargin.left - kMargin.right, height: height - kMargin.top - kMargin.bottom};
   const shareX = (v) => (v - x0) / (x1 - x0), shareY = (v) => (v - y0) / (y1 - y0);
   const toX = (share) => kMargin.left + share * inner.width, toY = (share) => kMargin.top + (1 - share) * inner.height;
@@ -86,14 +86,15 @@ function drawAxes(context, {height, inner, x, y}) {
   context.strokeRect(kMargin.left, kMargin.top, inner.width, inner.height);
   context.fillStyle = color("muted");
   context.font = "11px system-ui, sans-serif";
-  const scale = ({name, values}) => prefixed(unitOf(name), largestOf([values]));
+  const scale = ({name, all}) => prefixed(unitOf(name), largestOf([all]));
   const title = ({name}, {unit}) => name.replaceAll("_", " ") + (unit ? `, ${unit}` : "");
   const [sx, sy] = [scale(x), scale(y)];
   context.textAlign = "center";
-  for (const v of ticks(x.low, x.high, Math.max(2, Math.floor(inner.width / 60)))) context.fillText(number(v * sx.factor, 3), x.to(v), height - 22);
+  const along = ticks(x.low, x.high, Math.max(2, Math.floor(inner.width / 60))), up = ticks(y.low, y.high, 6);
+  tickTexts(along, sx.factor).forEach((text, i) => context.fillText(text, x.to(along[i]), height - 22));
   context.fillText(title(x, sx), kMargin.left + inner.width / 2, height - 6);
   context.textAlign = "right";
-  for (const v of ticks(y.low, y.high, 6)) context.fillText(number(v * sy.factor, 3), kMargin.left - 6, y.to(v) + 4);
+  tickTexts(up, sy.factor).forEach((text, i) => context.fillText(text, kMargin.left - 6, y.to(up[i]) + 4));
   context.save();
   context.translate(12, kMargin.top + inner.height / 2);
   context.rotate(-Math.PI / 2);

@@ -25,6 +25,7 @@ export class Sweep {
     const isQuantity = (name) => !name.includes(".") && !["success", "seed", "sample"].includes(name) && !this.table.isText(name);
     this.quantities = names.filter(isQuantity);
     this.contestants = [kController, ...baselines].map((name) => this.figures(name));
+    this.varying = this.quantities.filter((name) => new Set(sorted(this.all(name).flatMap((values) => [...values]))).size > 1);
     const [{successes, n, interval}] = this.contestants, save = () => download(part.name, this.table.csv());
     const facts = `${successes} of ${n} succeeded: ${percent(successes / n)}, 95 % interval ${percent(interval[0])} to ${percent(interval[1])}`;
     this.node = element("section", {id: "part-" + index, "aria-label": this.title}, element("h2", {}, this.title),
@@ -40,6 +41,11 @@ export class Sweep {
     return this.table.numbers(this.table.has(own) ? own : quantity);
   }
 
+  /// Of every contestant.
+  all(quantity) {
+    return this.contestants.map(({name}) => this.values(quantity, name));
+  }
+
   figures(name) {
     const success = this.values("success", name), successes = success.reduce((sum, v) => sum + (v > 0), 0), n = success.length;
     return {name, success, successes, n, interval: successInterval(successes, n)};
@@ -48,9 +54,8 @@ export class Sweep {
   /// One line for each contestant: the quantities that a baseline has of its own are what came of the runs.
   comparison() {
     const baseline = this.contestants[1].name;
-    const outcomes = this.quantities.filter((name) => this.table.has(`${baseline}.${name}`) && !kOfTheSolver.includes(name));
-    const all = (quantity) => this.contestants.map((one) => this.values(quantity, one.name));
-    const scales = new Map(outcomes.map((name) => [name, prefixed(unitOf(name), largestOf(all(name)))]));
+    const outcomes = this.varying.filter((name) => this.table.has(`${baseline}.${name}`) && !kOfTheSolver.includes(name));
+    const scales = new Map(outcomes.map((name) => [name, prefixed(unitOf(name), largestOf(this.all(name)))]));
     const lines = this.contestants.map(({name, successes, n, interval}) => {
       const line = {name, rate: `${successes} of ${n}`, interval: `${percent(interval[0])} to ${percent(interval[1])}`};
       for (const quantity of outcomes) {
@@ -66,11 +71,11 @@ export class Sweep {
   }
 
   maps() {
-    const options = () => this.quantities.map((name) => element("option", {}, name));
+    const options = () => this.varying.map((name) => element("option", {}, name));
     const select = (label) => element("select", {"aria-label": label, onchange: () => this.draw()}, ...options());
     this.across = select("Across");
     this.upward = select("Upward");
-    this.upward.selectedIndex = Math.min(1, this.quantities.length - 1);
+    this.upward.selectedIndex = Math.min(1, this.varying.length - 1);
     const seeds = this.table.numbers("seed");
     for (const one of this.contestants) {
       const rate = `${one.successes} of ${one.n}`;
@@ -88,17 +93,18 @@ export class Sweep {
   }
 
   draw(only) {
-    const names = [this.across, this.upward].map((select) => this.quantities[select.selectedIndex]);
+    const names = [this.across, this.upward].map((select) => this.varying[select.selectedIndex]);
+    if (names.includes(undefined)) return;
     for (const one of only ? [only] : this.contestants) {
-      const [x, y] = names.map((name) => ({name, values: this.values(name, one.name)}));
-      if (names[0] !== undefined) drawSuccessMap(one.canvas, x, y, one.success);
+      const [x, y] = names.map((name) => ({name, values: this.values(name, one.name), all: this.all(name).flatMap((values) => [...values])}));
+      drawSuccessMap(one.canvas, x, y, one.success);
     }
   }
 
   /// What was drawn stands before the success in a record, what came of it behind.
   histograms() {
     const {names} = this.table, isDrawn = (name) => names.indexOf(name) < names.indexOf("success");
-    const spread = this.quantities.filter((name) => this.values(name).some(Number.isFinite));
+    const constants = this.quantities.filter((name) => !this.varying.includes(name) && Number.isFinite(this.values(name)[0]));
     const failed = (values, success) => Array.from(values).filter((v, k) => !(success[k] > 0));
     const one = (name) => {
       const own = this.contestants.filter((c, i) => i === 0 || (this.table.has(`${c.name}.${name}`) && !kOfTheSolver.includes(name)));
@@ -112,7 +118,9 @@ export class Sweep {
     const sample = (shape, role, text) => element("span", {class: "key"}, element("i", {class: shape, style: `background: var(--${role})`}), text);
     const [{successes, n}] = this.contestants, bad = successes < n ? [sample(undefined, "bad", `failed (${kController})`)] : [];
     const key = element("p", {class: "keys"}, ...this.contestants.map(({name}, i) => sample(i > 0 ? "arrow-key" : undefined, `series-${i}`, name)), ...bad);
-    return [...group("What came of it", spread.filter((name) => !isDrawn(name)), key), ...group("What was drawn", spread.filter(isDrawn))];
+    const same = constants.map((name) => `${readable(name)} ${number(this.values(name)[0], 4)}`).join(", ");
+    return [...group("What came of it", this.varying.filter((name) => !isDrawn(name)), key), ...group("What was drawn", this.varying.filter(isDrawn)),
+            ...(same ? [element("p", {class: "facts"}, `The same in all runs: ${same}.`)] : [])];
   }
 
   failures({name, success, successes, n}) {
