@@ -59,7 +59,6 @@ Eigen::MatrixXd covariance_of(const Estimator& estimator) {
   return covariance;
 }
 
-
 /// Means and covariance of all estimates.
 struct Beliefs {
   Vector mean;
