@@ -29,14 +29,17 @@ void validate(const EstimationProblem& problem) {
   const int nx = problem.dae->num_states(), nz = nx + problem.dae->num_inputs(), arguments = problem.measured->num_arguments();
   require(problem.dae->num_algebraics() == 0 && problem.dae->has_derivatives(),
           "a Dae that is not solved for its derivatives (expected xdot = f(x, u), without algebraic variables)");
-  require(arguments == nz, "what is measured takes " + std::to_string(arguments) + " arguments (expected " + std::to_string(nz) + ", x and u)");
+  require(arguments == nz,
+          "what is measured takes " + std::to_string(arguments) + " arguments (expected " + std::to_string(nz) + ", x and u)");
   sized(problem.ripple, nz - nx, "ripple");
   sized(problem.noise, problem.measured->num_values(), "noise");
   sized(problem.mean, nx, "mean"), sized(problem.deviation, nx, "deviation"), sized(problem.drift, nx, "drift");
-  require(static_cast<int>(problem.is_positive.size()) == nx, "what is positive has the wrong length (expected " + std::to_string(nx) + ")");
+  require(static_cast<int>(problem.is_positive.size()) == nx,
+          "what is positive has the wrong length (expected " + std::to_string(nx) + ")");
   for (int i = 0; i < nx; ++i) {
-    require(!problem.is_positive[static_cast<std::size_t>(i)] || problem.mean[i] > 0,
-            "the mean of " + problem.dae->state_name(i) + " is " + std::to_string(problem.mean[i]) + " (expected more than 0, as it is positive)");
+    require(!problem.is_positive[static_cast<std::size_t>(i)] || problem.mean[i] > 0, "the mean of " + problem.dae->state_name(i) + " is " +
+                                                                                          std::to_string(problem.mean[i]) +
+                                                                                          " (expected more than 0, as it is positive)");
   }
   require((problem.noise.array() > 0).all(), "a noise that is not positive (expected more than 0)");
   require((problem.deviation.array() > 0).all(), "a deviation that is not positive (expected more than 0)");

@@ -24,14 +24,14 @@ struct EstimationProblem {
   EstimationProblem(std::shared_ptr<const Dae> dae, std::shared_ptr<const SmoothFunction> measured);
 
   std::string name = "estimation";
-  std::shared_ptr<const Dae> dae;                  // F = xdot - f(x, u): without algebraic variables, with `derivatives`
+  std::shared_ptr<const Dae> dae;  // F = xdot - f(x, u): without algebraic variables, with `derivatives`
   DaeMode mode;
   std::shared_ptr<const SmoothFunction> measured;  // h(x, u)
   Vector noise;                                    // of h: standard deviations, > 0
   Vector mean, deviation;                          // of x before anything was measured; deviation > 0
   std::vector<bool> is_positive;                   // of x: `mean` is then its median, deviation/mean the deviation of its logarithm
   Vector ripple;                                   // of u: standard deviations, >= 0
-  Vector drift;                                    // of x: the standard deviation of what comes to it in 1 s, >= 0; of what is positive: at its mean
+  Vector drift;  // of x: the standard deviation of what comes to it in 1 s, >= 0; of what is positive: at its mean
 
   int window = 10;             // intervals between measurements that are looked back over, >= 1
   double longest_step = 5e-3;  // s, of the integration of f

@@ -3,7 +3,8 @@
 //     min   1/2 |W (xi_0 - m)|^2 + 1/2 sum |r_k(x_k)|^2 + 1/2 sum |w_k|^2        s.t.   phi_k(xi_k, w_k) - xi_{k+1} = 0
 //
 //     xi: x, or the logarithm of what is positive, in units s of the prior's deviations
-//     r_k = (h(x_k) - y_k) / noise           phi_k: where x leads, as xi           w_k: ripple of the commands and drift, in their deviations
+//     r_k = (h(x_k) - y_k) / noise           phi_k: where x leads, as xi           w_k: ripple of the commands and drift, in their
+//     deviations
 //
 // The squares of prior and measurements are rows that give way (compliance 1), so that their multipliers are the residuals. What was not
 // measured has weight 0. Variables are ordered xi_0 w_0 xi_1 ... xi_N, rows: prior, then r_k and the dynamics by interval. Hessian: Gauss
@@ -24,7 +25,6 @@ class EstimationWindow final : public Nlp {
   /// Before anything was measured: every interval 0 s long, the prior at its first instant. The problem must outlive it.
   explicit EstimationWindow(const EstimationProblem& problem);
 
-  int num_states() const { return nx_; }
   int intervals() const { return intervals_; }
   /// Where xi_k stands among the variables.
   int state_at(int k) const { return k * stride_; }
@@ -74,7 +74,25 @@ class EstimationWindow final : public Nlp {
     Vector residual, next;
     Eigen::MatrixXd gradients, a, g;
   };
-  struct Evaluation;
+  /// Storage of an evaluation, and its outcome at every instant.
+  struct Evaluation final : Scratch {
+    Evaluation(const EstimationProblem& problem, int nx, int ny, int ripples, int instants)
+        : transition(*problem.dae, problem.mode, problem.longest_step),
+          z(problem.measured->num_arguments()),
+          slope(nx),
+          surprise(nx),
+          by_z(ny, z.size()),
+          command(problem.dae->num_inputs()),
+          at(std::size_t(instants), {Vector::Zero(ny), Vector::Zero(nx), Eigen::MatrixXd::Zero(nx, ny), Eigen::MatrixXd::Zero(nx, nx),
+                                     Eigen::MatrixXd::Zero(nx, ripples)}) {}
+
+    StateTransition transition;
+    Vector z, slope;       // (x, u); dx/dxi
+    Vector surprise;       // xi_0 - m
+    Eigen::MatrixXd by_z;  // of h
+    Vector command;        // with its ripple
+    std::vector<Linearised> at;
+  };
 
   int rows_at(int k) const { return nx_ + k * (ny_ + nx_); }
   const Instant& instant(int k) const { return instants_[static_cast<std::size_t>(k)]; }

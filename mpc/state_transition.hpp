@@ -17,7 +17,8 @@ class StateTransition {
   /// The Dae must outlive it; steps of `longest_step` (s) at most.
   StateTransition(const Dae& dae, const DaeMode& mode, double longest_step);
 
-  /// From x over dt (s); afterwards `state` and `derivative` (nx x (nx + nu)) hold where that leads. dt = 0 leads nowhere. Allocates nothing.
+  /// From x over dt (s); afterwards `state` and `derivative` (nx x (nx + nu)) hold where that leads. dt = 0 leads nowhere. Allocates
+  /// nothing.
   void advance(ConstVectorRef x, ConstVectorRef u, double dt);
 
   Vector state;

@@ -22,7 +22,8 @@ TEST(DeltaPayload, ACircleTellsPayloadAndDamping) {
     sum += experiment.normalised_error();
     EXPECT_LT(experiment.deviation(kPayload), 7e-4) << "world " << seed << ": 0.05 before";
     for (const int i : {kPayload, kDamping}) {
-      EXPECT_NEAR(experiment.mean[i], experiment.truth[i], 4 * experiment.deviation(i)) << "world " << seed << ": " << kStateNames[std::size_t(i)];
+      EXPECT_NEAR(experiment.mean[i], experiment.truth[i], 4 * experiment.deviation(i))
+          << "world " << seed << ": " << kStateNames[std::size_t(i)];
     }
   }
   EXPECT_NEAR(sum / kWorlds, kStates, consistency_bound(kStates, kWorlds));

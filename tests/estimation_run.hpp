@@ -21,7 +21,8 @@ class EstimationRun {
  public:
   EstimationRun(const std::string& scene, const std::vector<std::string>& overrides)
       : task_(make_task(scene, overrides)),
-        estimator_(take_estimator(task_, [](const Nlp& problem, const Options& options) { return make_solver("newton-kkt", problem, options); })),
+        estimator_(
+            take_estimator(task_, [](const Nlp& problem, const Options& options) { return make_solver("newton-kkt", problem, options); })),
         script_(take_controller(task_, "script", nullptr)),
         loop_(*task_.plant, *script_, task_.duration) {}
 
@@ -70,6 +71,8 @@ class EstimationRun {
 };
 
 /// Three deviations of the mean of chi squared with so many degrees of freedom, over so many worlds.
-inline double consistency_bound(int freedom, int worlds) { return 3 * std::sqrt(2.0 * freedom / worlds); }
+inline double consistency_bound(int freedom, int worlds) {
+  return 3 * std::sqrt(2.0 * freedom / worlds);
+}
 
 }  // namespace tenon

@@ -19,7 +19,9 @@ namespace {
 
 constexpr double kPeriod = 0.05;
 
-std::unique_ptr<Solver> newton(const Nlp& problem, const Options& options) { return make_solver("newton-kkt", problem, options); }
+std::unique_ptr<Solver> newton(const Nlp& problem, const Options& options) {
+  return make_solver("newton-kkt", problem, options);
+}
 
 /// A cart that is pushed by u and by a constant that nobody knows.
 struct Cart {
@@ -32,7 +34,8 @@ struct Cart {
 };
 
 EstimationProblem cart(int window) {
-  EstimationProblem problem(std::make_shared<AutomaticDae<Cart>>(Cart{}), automatic_function<4, 1>([](const auto& z, auto& y) { y[0] = z[0]; }));
+  EstimationProblem problem(std::make_shared<AutomaticDae<Cart>>(Cart{}),
+                            automatic_function<4, 1>([](const auto& z, auto& y) { y[0] = z[0]; }));
   problem.noise << 0.01;
   problem.mean << 0.1, -0.2, 0.3;
   problem.deviation << 1, 0.5, 2;
@@ -94,7 +97,9 @@ class World {
   Vector x;
 };
 
-Vector push(int k, double size) { return Vector::Constant(1, size * std::sin(0.15 * k)); }
+Vector push(int k, double size) {
+  return Vector::Constant(1, size * std::sin(0.15 * k));
+}
 
 /// `steps` updates in this world; each is seen by `look` with the true state.
 template <class Look>
@@ -272,7 +277,8 @@ TEST(MovingHorizon, IsTheSameBitForBitEveryTime) {
 TEST(MovingHorizon, WhatIsNotFiniteWasNotMeasured) {
   const EstimationProblem problem = cart(5);
   MovingHorizon seeing(problem, &newton), blind(problem, &newton);
-  const Vector none = Vector::Constant(1, std::numeric_limits<double>::quiet_NaN()), u = Vector::Constant(1, 0.5), y = Vector::Constant(1, 0.2);
+  const Vector none = Vector::Constant(1, std::numeric_limits<double>::quiet_NaN()), u = Vector::Constant(1, 0.5),
+               y = Vector::Constant(1, 0.2);
   for (MovingHorizon* horizon : {&seeing, &blind}) horizon->update(0, y, Vector::Zero(1));
   blind.update(kPeriod, none, u);
   blind.update(2 * kPeriod, y, u);
@@ -289,7 +295,8 @@ TEST(MovingHorizon, RefusesProblemsThatMakeNoSense) {
     change(problem);
     MovingHorizon(problem, &newton);
   };
-  EXPECT_MESSAGE(make([](auto& p) { p.noise.setZero(); }), std::invalid_argument, "pendulum: a noise that is not positive (expected more than 0)");
+  EXPECT_MESSAGE(make([](auto& p) { p.noise.setZero(); }), std::invalid_argument,
+                 "pendulum: a noise that is not positive (expected more than 0)");
   EXPECT_MESSAGE(make([](auto& p) { p.mean.resize(3); }), std::invalid_argument, "pendulum: mean has 3 entries (expected 4 finite ones)");
   EXPECT_MESSAGE(make([](auto& p) { p.window = 0; }), std::invalid_argument, "pendulum: a window of 0 intervals (expected at least 1)");
   EXPECT_MESSAGE(make([](auto& p) { p.is_positive[0] = true; }), std::invalid_argument,

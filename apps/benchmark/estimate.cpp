@@ -35,7 +35,8 @@ void run_estimator(const std::string& scene, const std::string& solver, std::uin
       return true;
     });
   }
-  out.notes.push_back(fmt::format("{:.2f} iterations an update, {} instants of {} states", static_cast<double>(iterations) / static_cast<double>(out.seconds.size()),
+  out.notes.push_back(fmt::format("{:.2f} iterations an update, {} instants of {} states",
+                                  static_cast<double>(iterations) / static_cast<double>(out.seconds.size()),
                                   estimator.window().intervals() + 1, estimator.num_estimates()));
 }
 

@@ -25,12 +25,14 @@ class PayloadDae final : public Dae {
 
   void jacobian(const DaeMode&, const DaePoint& at, double alpha, Workspace&, std::span<double> values) const override {
     State x = at.x;
-    differentiate(x, [&] { return rates(x, at.u); }, values);
+    differentiate(
+        x, [&] { return rates(x, at.u); }, values);
     for (int c = 0; c < kStates; ++c) values[std::size_t((kStates + 1) * c)] += alpha;
   }
   void input_jacobian(const DaeMode&, const DaePoint& at, Workspace&, std::span<double> values) const override {
     Vector3 u = at.u;
-    differentiate(u, [&] { return rates(at.x, u); }, values);
+    differentiate(
+        u, [&] { return rates(at.x, u); }, values);
   }
 
   bool has_derivatives() const override { return true; }
@@ -107,7 +109,10 @@ delta::Robot robot_with(const Parameters& parameters, double payload, double dam
 EstimationProblem estimation_problem(const Parameters& parameters, const Prior& prior, int window) {
   EstimationProblem problem(std::make_shared<PayloadDae>(robot_with(parameters, 0, 0)),
                             automatic_function<kStates + delta::kArms, delta::kArms>(
-                                [](const auto& z, auto& y) { y = {z[kAngle], z[kAngle + 1], z[kAngle + 2]}; }, {"q11", "q21", "q31"}));
+                                [](const auto& z, auto& y) {
+                                  y = {z[kAngle], z[kAngle + 1], z[kAngle + 2]};
+                                },
+                                {"q11", "q21", "q31"}));
   problem.name = "delta payload";
   problem.noise.setConstant(parameters.noise);
   problem.mean = prior.mean;

@@ -42,7 +42,8 @@ delta::ReferencePath read_path(const Table& table, const delta::Vector3& centre)
   path.radius = positive(table, "radius", 0.06);
   path.frequency = positive(table, "frequency", 0.5);
   const std::string motion = table.text("motion", "circle");
-  if (motion != "circle" && motion != "hold") throw InputError(table.position("motion"), "unknown motion '" + motion + "'", "circle or hold");
+  if (motion != "circle" && motion != "hold")
+    throw InputError(table.position("motion"), "unknown motion '" + motion + "'", "circle or hold");
   if (motion == "circle") path.kind = delta::ReferencePath::Kind::circle;
   return path;
 }

@@ -25,9 +25,9 @@ struct Parameters {
   double softness = 1e-3;    // m: d
   double slip_speed = 0.02;  // m/s: v_s
   double gravity = 9.81;
-  double noise = 2e-5;       // m, of the finger's position: standard deviation
+  double noise = 2e-5;                                 // m, of the finger's position: standard deviation
   double force_ripple = 0.05, friction_ripple = 0.02;  // N, standard deviations of what is held over a period
-  double period = 0.01;      // s
+  double period = 0.01;                                // s
 };
 
 /// What is known before the experiment, as far as it is uncertain; deviations of what is at rest and known are small, not 0.

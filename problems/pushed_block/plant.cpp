@@ -13,7 +13,11 @@ constexpr double kMoved = 0.01;      // m: a block that was pushed
 }  // namespace
 
 BlockPlant::BlockPlant(const Parameters& parameters, const Prior& prior, const State& stated)
-    : parameters_(parameters), prior_(prior), stated_(stated), dae_(estimation_problem(parameters, prior, 1).dae), workspace_(dae_->make_workspace()) {
+    : parameters_(parameters),
+      prior_(prior),
+      stated_(stated),
+      dae_(estimation_problem(parameters, prior, 1).dae),
+      workspace_(dae_->make_workspace()) {
   reset(0);
 }
 

@@ -8,7 +8,7 @@ namespace tenon::pushed_block {
 
 namespace {
 
-constexpr double kPole = 25;   // 1/s: of the loop, both poles
+constexpr double kPole = 25;    // 1/s: of the loop, both poles
 constexpr double kShare = 0.5;  // of what is new in the rate
 
 }  // namespace

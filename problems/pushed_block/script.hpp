@@ -12,10 +12,10 @@ namespace tenon::pushed_block {
 
 struct Path {
   bool moves = true;
-  double start = 0.3;       // s
-  double speed = 0.06;      // m/s
-  double depth = 0;         // of the speed's modulation
-  double frequency = 2;     // Hz
+  double start = 0.3;    // s
+  double speed = 0.06;   // m/s
+  double depth = 0;      // of the speed's modulation
+  double frequency = 2;  // Hz
 };
 
 class PushScript final : public Controller {

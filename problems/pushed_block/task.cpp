@@ -50,7 +50,7 @@ State read_block(const Table& root) {
 Prior read_prior(const Table& root) {
   const Table table = required_table(root, "believed", {"place", "mass", "friction"});
   Prior prior;
-  prior.deviation[kFinger] = 1e-4;                                // m: where it starts
+  prior.deviation[kFinger] = 1e-4;                                    // m: where it starts
   prior.deviation[kFingerRate] = prior.deviation[kBlockRate] = 0.01;  // m/s: both are at rest, as far as one sees
   for (const auto& [key, i] : {std::pair{"place", kBlock}, {"mass", kBlockMass}, {"friction", kFriction}}) {
     const std::vector<double> pair = table.numbers(key, 2);
@@ -70,7 +70,8 @@ Scenery draw() {
   out.bodies.push_back({.name = "finger",
                         .position = {"finger", 0, 0},
                         .shapes = {SceneryShape::capsule({-1.5 * kSize, 0, 0}, {-kSize / 6, 0, 0}, kSize / 6)}});
-  out.bodies.push_back({.name = "block", .position = {"block", 0, 0}, .shapes = {SceneryShape::box({kSize, kSize, 0}).at({kSize / 2, 0, 0})}});
+  out.bodies.push_back(
+      {.name = "block", .position = {"block", 0, 0}, .shapes = {SceneryShape::box({kSize, kSize, 0}).at({kSize / 2, 0, 0})}});
   out.arrows.push_back({.name = "contact", .at = {.body = "block", .at = {}}, .vector = {"contact_force", 0, 0}, .frame = "world"});
   out.plots.push_back({.title = "Forces", .unit = "N", .columns = {"force", "contact_force"}});
   out.plots.push_back({.title = "Speeds", .unit = "m/s", .columns = {"finger_rate", "block_rate"}});
@@ -82,8 +83,8 @@ Scenery draw() {
 ControlTask make_task(const toml_file::Document& document) {
   const Table root = document.root({"task", "parameters", "block", "believed"});
   const Table table = required_table(root, "parameters",
-                                     {"motion", "speed", "finger_mass", "stiffness", "softness", "slip_speed", "gravity", "noise", "force_ripple",
-                                      "friction_ripple", "period", "duration", "window"});
+                                     {"motion", "speed", "finger_mass", "stiffness", "softness", "slip_speed", "gravity", "noise",
+                                      "force_ripple", "friction_ripple", "period", "duration", "window"});
   const Parameters parameters = read_parameters(table);
   const Prior prior = read_prior(root);
 
