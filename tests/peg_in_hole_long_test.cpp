@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <numeric>
+#include <optional>
 #include <thread>
 
 #include "tenon/apps/statistics.hpp"
@@ -43,25 +45,22 @@ void print(const std::string& setting, const std::string& controller, const Verd
               most(verdicts, "time"), most(verdicts, "first_touch_peak"), most(verdicts, "sustained_force"), 100 * gentle_success(verdicts));
 }
 
-/// Worlds 1 to 500 on all cores; an experiment for each worker.
-Verdicts run_worlds(const ExperimentFactory& make_experiment) {
-  std::vector<std::uint64_t> seeds(kWorlds);
-  for (std::size_t k = 0; k < seeds.size(); ++k) seeds[k] = k + 1;
+/// Worlds 1 to 500 on all cores.
+Verdicts run_worlds(const std::string& scene, const std::string& controller, const std::vector<std::string>& overrides) {
+  const auto make_experiment = [&] {
+    ControlTask task = tenon::make_task(scene, overrides);
+    std::unique_ptr<Controller> law = take_controller(task, controller, make_newton_kkt);
+    return std::make_unique<ClosedLoopExperiment>(std::move(task.plant), std::move(law), task.duration);
+  };
   const std::vector<std::string> names = make_experiment()->names();
+  std::vector<std::uint64_t> seeds(kWorlds);
+  std::iota(seeds.begin(), seeds.end(), 1);
   Verdicts verdicts;
   const auto add = [&](std::uint64_t, const Vector& row) {
     for (std::size_t c = 0; c < names.size(); ++c) verdicts[names[c]].push_back(row[static_cast<int>(c)]);
   };
   run_samples(make_experiment, seeds, static_cast<int>(std::max(1U, std::thread::hardware_concurrency())), {.on_row = add});
   return verdicts;
-}
-
-Verdicts run_worlds(const std::string& scene, const std::string& controller, const std::vector<std::string>& overrides) {
-  return run_worlds([&] {
-    ControlTask task = tenon::make_task(scene, overrides);
-    std::unique_ptr<Controller> law = take_controller(task, controller, make_newton_kkt);
-    return std::make_unique<ClosedLoopExperiment>(std::move(task.plant), std::move(law), task.duration);
-  });
 }
 
 struct Setting {
@@ -114,18 +113,27 @@ TEST_P(PegLong, FiveHundredHertzServeAsWellAsFifty) {
   expect_within_limits(fast, least_success);
 }
 
-// The shares that a prototype measured in 200 worlds of the first setting.
+// What a prototype measured in 200 worlds of the first setting: the share of successes, and of those below 15 N. Without friction the peg falls
+// harder off the flat here than there, so that more of what gives way exceeds 15 N: peg_in_hole.md, section 5.
 TEST(PegBaselinesLong, SucceedWithinFivePointsOfAPrototypes) {
   struct Shares {
-    const char* controller;
-    double success, gentle;
+    const char *friction, *controller;
+    double success;
+    std::optional<double> gentle;
   };
-  for (const char* friction : {"friction=0", "friction=0.2"}) {
-    for (const auto& [controller, expected, expected_gentle] : {Shares{"straight", 0.815, 0.815}, {"soft", 1, 0.9}, {"tilt", 1, 1}}) {
-      SCOPED_TRACE(std::string(controller) + ", " + friction);
-      const Verdicts verdicts = run_worlds("peg-in-hole", controller, {friction});
-      EXPECT_NEAR(success(verdicts), expected, 0.05);
-      EXPECT_NEAR(gentle_success(verdicts), expected_gentle, 0.05);
+  for (const Shares& prototype : {Shares{"friction=0.2", "straight", 0.815, 0.815},
+                                  {"friction=0.2", "soft", 1, 0.9},
+                                  {"friction=0.2", "admittance", 0.875, 0.81},
+                                  {"friction=0.2", "tilt", 1, 1},
+                                  {"friction=0", "straight", 0.815, 0.815},
+                                  {"friction=0", "soft", 1, std::nullopt},
+                                  {"friction=0", "admittance", 1, std::nullopt},
+                                  {"friction=0", "tilt", 1, 1}}) {
+    SCOPED_TRACE(std::string(prototype.controller) + ", " + prototype.friction);
+    const Verdicts verdicts = run_worlds("peg-in-hole", prototype.controller, {prototype.friction});
+    EXPECT_NEAR(success(verdicts), prototype.success, 0.05);
+    if (prototype.gentle) {
+      EXPECT_NEAR(gentle_success(verdicts), *prototype.gentle, 0.05);
     }
   }
 }
