@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "tenon/problems/peg_in_hole/channels.hpp"
 
@@ -12,6 +11,7 @@ namespace {
 
 constexpr double kInterval = 0.02;   // s: what the evidence and the forgetting speak of
 constexpr double kForgetting = 0.985;
+constexpr float kNegligible = 20;    // a weight of e^-20
 constexpr double kMargin = 1.2;      // of the grid beyond the prior's half width
 constexpr double kNear = 2;          // mm above the highest mouth there may be: the estimate begins
 
@@ -30,7 +30,8 @@ HoleEstimator::HoleEstimator(const HoleEstimatorOptions& options)
       evidence_(x_.size(), z_.size() * phi_.size()),
       prior_(x_.size(), z_.size() * phi_.size()),
       contacts_(options.geometry, x_),
-      weight_(x_.size()) {
+      weight_(x_.size()),
+      least_(evidence_.cols()) {
   const auto distance = [&](float at, int i) {
     const double half = options_.prior.half_width[i];
     return half > 0 ? static_cast<float>(std::pow((at - options_.prior.middle[i]) / half, 2) / 2) : 0.0F;
@@ -64,17 +65,21 @@ void HoleEstimator::update(double t, ConstVectorRef measurements, ConstVectorRef
   const Vector3d force(measurements[kMeasuredForce], measurements[kMeasuredForce + 1], 1e3 / lever * measurements[kMeasuredForce + 2]);
   evidence_ *= static_cast<float>(std::pow(kForgetting, gain));
   contacts_.observe(pose, force);
-  for (Eigen::Index c = 0; c < evidence_.cols(); ++c) contacts_.add(z_[c % z_.size()], phi_[c / z_.size()], static_cast<float>(gain), evidence_.col(c));
+  const float ruled_out = least_.minCoeff() + kNegligible;  // for now: what speaks against it fades
+  for (Eigen::Index c = 0; c < evidence_.cols(); ++c) {
+    if (least_[c] <= ruled_out) contacts_.add(z_[c % z_.size()], phi_[c / z_.size()], static_cast<float>(gain), evidence_.col(c));
+  }
   summarise();
 }
 
 void HoleEstimator::summarise() {
-  float least = std::numeric_limits<float>::infinity();
-  for (Eigen::Index c = 0; c < evidence_.cols(); ++c) least = std::min(least, (evidence_.col(c) + prior_.col(c)).minCoeff());
+  for (Eigen::Index c = 0; c < evidence_.cols(); ++c) least_[c] = (evidence_.col(c) + prior_.col(c)).minCoeff();
+  const float least = least_.minCoeff();
   double sum = 0;
   Vector3d first = Vector3d::Zero();
   Matrix3d second = Matrix3d::Zero();
   for (Eigen::Index c = 0; c < evidence_.cols(); ++c) {
+    if (least_[c] > least + kNegligible) continue;
     weight_ = (least - evidence_.col(c) - prior_.col(c)).exp();
     const double w = weight_.sum(), wx = (weight_ * x_).sum(), wxx = (weight_ * x_ * x_).sum();
     const double z = z_[c % z_.size()], phi = phi_[c / z_.size()];

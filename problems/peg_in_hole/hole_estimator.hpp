@@ -41,6 +41,7 @@ class HoleEstimator final : public Estimator {
   Eigen::ArrayXXf prior_;
   ContactEvidence contacts_;
   Eigen::ArrayXf weight_;                // of one column
+  Eigen::ArrayXf least_;                 // of each column: what speaks against its best place
   Vector3d mean_;
   Matrix3d covariance_;
   double last_ = 0;
