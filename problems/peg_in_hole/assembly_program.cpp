@@ -170,9 +170,10 @@ void AssemblyProgram::initial_point(VectorRef x) const {
     x.segment<kStates>(kStage * k) << pose, velocity, spring, rate;
     if (k == problem_.intervals) break;
     const Vector3d next = next_on_the_way(pose), end_rate = (next - pose) / step_;
-    const Vector3d force = inertia_.cwiseProduct(end_rate - velocity);                                      // (2.2), nothing touches
+    const Vector3d force = inertia_.cwiseProduct(end_rate - velocity);                                      // (2.2) without contact
     const Vector3d end_spring = keep_.cwiseProduct(spring) + yield_.cwiseProduct(force);                    // (2.3)
     x.segment<3>(kStage * k + kNext) = end_rate;
+    x.segment<kContacts>(kStage * k + kForces).setConstant(problem_.guessed_force);
     rate = (end_spring - spring) / step_ + end_rate;                                                        // (2.4)
     pose = next, velocity = end_rate, spring = end_spring;
   }
@@ -214,6 +215,7 @@ AssemblyProblem single_plan() {
   problem.intervals = 40;
   problem.smoothing = 0.05;  // differences can still follow its third derivative
   problem.follow_hole = false;
+  problem.guessed_force = 0.1;
   problem.hole = {0.9, 0, std::numbers::pi / 180 * problem.geometry.lever};
   return problem;
 }

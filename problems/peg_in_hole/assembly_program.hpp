@@ -28,6 +28,7 @@ struct AssemblyProblem {
   double speed = 25;             // mm/s, downwards
   double depth = 20.3;           // mm, aimed at
   bool follow_hole = true;       // false: the peg is to stay where x and phi began, and contact must do the work
+  double guessed_force = 0;      // N, of every contact in the initial point
   Vector3d pose{0, 5, 0};        // until something is observed
   Vector3d hole{0, 0, 0};
 };
