@@ -68,6 +68,10 @@ struct Setting {
   double least_success;
 };
 
+void PrintTo(const Setting& setting, std::ostream* out) {
+  *out << setting.scene << ", " << setting.friction;
+}
+
 const Setting kSettings[] = {{"First", "peg-in-hole", "friction=0.2", 0.995},
                              {"FirstWithoutFriction", "peg-in-hole", "friction=0", 0.995},
                              {"Tight", "peg-in-hole-tight", "friction=0.2", 0.98},
