@@ -87,15 +87,14 @@ struct Beliefs {
 struct Belief {
   std::string name;
   double mean, deviation, prior_deviation;
-  double left;                 // of the deviation there was before; of what is known in proportion, both relative to their means
+  bool is_observed;            // of what is known in proportion: by deviations relative to their means
   std::string companion = {};  // what its error is tied to most
   double correlation = 0;      // with that
 
-  bool is_observed() const { return left <= kObserved; }
   bool is_tied() const { return std::abs(correlation) >= kTied; }
   std::string remark() const {
     const std::string tie = is_tied() ? fmt::format("better known together with {} (correlation {:.3f})", companion, correlation) : "";
-    if (is_observed()) return tie;
+    if (is_observed) return tie;
     return "not observed: this record says little about it" + (tie.empty() ? "" : "; " + tie);
   }
 };
@@ -105,7 +104,7 @@ std::vector<Belief> list_of(const Estimator& estimator, const Beliefs& prior) {
   std::vector<Belief> list;
   for (int i = 0; i < now.mean.size(); ++i) {
     const double before = prior.deviation(i), size = estimator.is_known_in_proportion(i) ? now.mean[i] / prior.mean[i] : 1;
-    Belief belief{estimator.estimate_name(i), now.mean[i], now.deviation(i), before, now.deviation(i) / (size * before)};
+    Belief belief{estimator.estimate_name(i), now.mean[i], now.deviation(i), before, now.deviation(i) <= kObserved * size * before};
     for (int j = 0; j < now.mean.size(); ++j) {
       if (j == i || !(std::abs(now.correlation(i, j)) > std::abs(belief.correlation))) continue;
       belief.companion = estimator.estimate_name(j);
@@ -122,7 +121,7 @@ Json json_of(const std::vector<Belief>& beliefs, const std::string& scene, int r
     Json estimate = Json::object().set("name", b.name).set("mean", b.mean).set("sd", b.deviation).set("prior_sd", b.prior_deviation);
     if (b.is_tied()) estimate.set("tied_to", b.companion).set("correlation", b.correlation);
     estimates.push(estimate);
-    if (!b.is_observed()) unobserved.push(b.name);
+    if (!b.is_observed) unobserved.push(b.name);
   }
   return Json::object().set("schema", 1).set("scene", scene).set("rows", rows).set("estimates", estimates).set("not_observed", unobserved);
 }

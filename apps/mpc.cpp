@@ -139,10 +139,13 @@ void print_json(const ControlTask& task, const std::string& solver, std::uint64_
             .set("baselines", baselines));
 }
 
-void print_text(const ControlTask& task, std::uint64_t seed, const StepStatistics& steps, const std::vector<Outcome>& outcomes) {
-  fmt::print("{}, world {}: {} steps, {} iterations, {} fallbacks, {} late; a step takes {} (p99 {}, most {})\n", task.name, seed,
-             steps.times.size(), steps.iterations, steps.fallbacks, steps.deadline_misses, duration_text(median(steps.times)),
-             duration_text(percentile(steps.times, 0.99)), duration_text(percentile(steps.times, 1)));
+void print_text(const ControlTask& task, bool solves, std::uint64_t seed, const StepStatistics& steps, const std::vector<Outcome>& outcomes) {
+  if (!solves)
+    fmt::print("{}, world {}: {} steps of a script\n", task.name, seed, steps.times.size());
+  else
+    fmt::print("{}, world {}: {} steps, {} iterations, {} fallbacks, {} late; a step takes {} (p99 {}, most {})\n", task.name, seed,
+               steps.times.size(), steps.iterations, steps.fallbacks, steps.deadline_misses, duration_text(median(steps.times)),
+               duration_text(percentile(steps.times, 0.99)), duration_text(percentile(steps.times, 1)));
   std::vector<std::string> header{"controller"};
   for (int i = 0; i < task.plant->num_verdicts(); ++i) header.push_back(task.plant->verdict_name(i));
   Table table(header);
@@ -167,6 +170,7 @@ int run_mpc(const Arguments& given) {
   const std::uint64_t seed = arguments.seed.value_or(0);
 
   const std::vector<std::string> names = controller_names(task);
+  const bool solves = task.program != nullptr;  // or the first controller is a script
   const auto controller = take_controller(task, names.front(), factory);
   MpcRun run(arguments, task, *controller);
   if (!run.run(seed)) {
@@ -175,8 +179,10 @@ int run_mpc(const Arguments& given) {
   }
   std::vector<Outcome> outcomes{{names.front(), verdicts_of(*task.plant)}};
   if (!arguments.output.empty()) {
-    task.scenery.plots.push_back({.title = "Solver", .columns = {"iterations", "fallback"}});
-    task.scenery.plots.push_back({.title = "Step time", .unit = "s", .columns = {"step_time"}});
+    if (solves) {
+      task.scenery.plots.push_back({.title = "Solver", .columns = {"iterations", "fallback"}});
+      task.scenery.plots.push_back({.title = "Step time", .unit = "s", .columns = {"step_time"}});
+    }
     write_scenery(task.scenery, arguments.output);
     make_report(arguments, {arguments.output});
   }
@@ -189,7 +195,7 @@ int run_mpc(const Arguments& given) {
   if (arguments.json)
     print_json(task, solver, seed, run.steps(), outcomes);
   else if (!arguments.quiet)
-    print_text(task, seed, run.steps(), outcomes);
+    print_text(task, solves, seed, run.steps(), outcomes);
   return kFinished;
 }
 

@@ -1,5 +1,6 @@
 #include "tenon/mpc/moving_horizon.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace tenon {
@@ -41,7 +42,7 @@ void MovingHorizon::start_afresh() {
 }
 
 void MovingHorizon::update(double t, ConstVectorRef measurements, ConstVectorRef commands) {
-  window_.slide(point_.x, has_started_ ? t - last_ : 0, commands, measurements);
+  window_.slide(point_.x, has_started_ ? std::max(0.0, t - last_) : 0, commands, measurements);
   window_.shift(point_.x, point_.lambda);
   last_ = t;
   has_started_ = true;

@@ -129,10 +129,22 @@ TEST_F(EstimateVerb, AMovingHorizonDoesNotReadTheTruth) {
   EXPECT_EQ(folder_->read("one.csv"), folder_->read("two.csv"));
 }
 
-TEST_F(EstimateVerb, AScriptHasNothingToPlan) {
-  const Ended ended = run("plan pushed-block");
-  EXPECT_EQ(ended.code, 2);
-  EXPECT_TRUE(is_one_line(ended.err, "tenon: pushed-block: has nothing to plan, its commands are a script")) << ended.err;
+TEST_F(EstimateVerb, AScriptHasNothingToPlanOrToSweep) {
+  for (const std::string verb : {"plan", "sweep"}) {
+    const Ended ended = run(verb + " pushed-block" + (verb == "sweep" ? " --samples 2" : ""));
+    EXPECT_EQ(ended.code, 2);
+    EXPECT_TRUE(is_one_line(ended.err, "tenon: pushed-block: has nothing to " + verb + ", its commands are a script")) << ended.err;
+  }
+}
+
+// Experiments have their picture too.
+TEST_F(EstimateVerb, MakesPagesOfTheExperimentAndOfWhatIsBelieved) {
+  for (const std::string scene : {"pushed-block", "delta-payload"}) {
+    EXPECT_EQ(run("mpc " + scene + " --set duration=0.2 --output " + scene + ".csv --report " + scene + ".html --quiet").code, 0);
+    EXPECT_EQ(run("estimate " + scene + " --measurements " + scene + ".csv --report believed.html --quiet").code, 0);
+    EXPECT_TRUE(folder_->has(scene + ".html"));
+  }
+  EXPECT_TRUE(folder_->has("believed.html"));
 }
 
 TEST_F(EstimateVerb, RefusesRecordsThatMakeNoSense) {

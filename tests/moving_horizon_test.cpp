@@ -39,6 +39,7 @@ EstimationProblem cart(int window) {
   problem.noise << 0.01;
   problem.mean << 0.1, -0.2, 0.3;
   problem.deviation << 1, 0.5, 2;
+  problem.ripple << 0.1;
   problem.drift << 0, 0.02, 0;
   problem.window = window;
   return problem;
@@ -72,9 +73,11 @@ EstimationProblem pendulum(int window = 10) {
 class World {
  public:
   World(const EstimationProblem& problem, std::uint64_t seed)
-      : problem_(problem), random_(seed), transition_(*problem.dae, problem.mode, problem.longest_step), x(problem.mean) {
+      : x(problem.mean), problem_(problem), random_(seed), transition_(*problem.dae, problem.mode, problem.longest_step) {
     for (int i = 0; i < x.size(); ++i) x[i] += problem.deviation[i] * random_.normal();
   }
+  Vector x;
+
   void advance(const Vector& u) {
     transition_.advance(x, u, kPeriod);
     x = transition_.state;
@@ -92,9 +95,6 @@ class World {
   const EstimationProblem& problem_;
   Random random_;
   StateTransition transition_;
-
- public:
-  Vector x;
 };
 
 Vector push(int k, double size) {
@@ -134,13 +134,14 @@ TEST(MovingHorizon, IsKalmansFilterWhereTheProblemIsLinearWhateverTheWindow) {
     Eigen::MatrixXd p = problem.deviation.cwiseAbs2().asDiagonal();
     Eigen::Matrix3d a;
     a << 1, kPeriod, kPeriod * kPeriod / 2, 0, 1, kPeriod, 0, 0, 1;
+    const Eigen::Vector3d b(kPeriod * kPeriod / 2, kPeriod, 0);
     horizon.reset();
     Vector held = Vector::Zero(1);
     for (int k = 0; k < 40; ++k) {
       if (k > 0) {
         world.advance(held);
-        m = a * m + held[0] * Eigen::Vector3d(kPeriod * kPeriod / 2, kPeriod, 0);
-        p = a * p * a.transpose();
+        m = a * m + b * held[0];
+        p = a * p * a.transpose() + problem.ripple[0] * problem.ripple[0] * b * b.transpose();
         p.diagonal() += kPeriod * problem.drift.cwiseAbs2();
       }
       const Vector y = world.measured(held);
@@ -245,8 +246,10 @@ TEST(MovingHorizon, TheWindowsDerivativesAreExact) {
 }
 
 TEST(MovingHorizon, AnUpdateAllocatesNothing) {
-  MovingHorizon horizon(pendulum(), &newton);
-  World world(pendulum(), 4);
+  EstimationProblem problem = pendulum();
+  problem.ripple << 0.1;
+  MovingHorizon horizon(problem, &newton);
+  World world(problem, 4);
   horizon.reset();
   Vector held = Vector::Zero(1), y(1);
   long count = 0;
@@ -275,7 +278,8 @@ TEST(MovingHorizon, IsTheSameBitForBitEveryTime) {
 
 // An interval without a measurement is an interval of prediction.
 TEST(MovingHorizon, WhatIsNotFiniteWasNotMeasured) {
-  const EstimationProblem problem = cart(5);
+  EstimationProblem problem = cart(5);
+  problem.ripple.setZero();  // which is drawn for each interval, be it short or long
   MovingHorizon seeing(problem, &newton), blind(problem, &newton);
   const Vector none = Vector::Constant(1, std::numeric_limits<double>::quiet_NaN()), u = Vector::Constant(1, 0.5),
                y = Vector::Constant(1, 0.2);

@@ -1,6 +1,7 @@
 #include "tenon/apps/sweep/open_experiment.hpp"
 
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "tenon/mpc/closed_loop.hpp"
@@ -20,8 +21,10 @@ class TaskExperiments {
         overrides_(arguments.set),
         max_iterations_(arguments.max_iterations),
         make_solver_(std::move(make_solver)),
-        plant_of_(std::move(plant_of)),
-        contestants_(controller_names(make_task(name_, overrides_))) {
+        plant_of_(std::move(plant_of)) {
+    const ControlTask task = make_task(name_, overrides_);
+    if (!task.program) throw std::invalid_argument(name_ + ": has nothing to sweep, its commands are a script");
+    contestants_ = controller_names(task);
     if (!arguments.baselines) contestants_.resize(1);
   }
 

@@ -122,7 +122,7 @@ EstimationProblem estimation_problem(const Parameters& parameters, const Prior& 
   problem.window = window;
   problem.longest_step = parameters.period;
   problem.solve.tolerance = 1e-6;
-  problem.solve.max_iterations = 20;
+  problem.solve.max_iterations = 5;  // the next window goes on from there
   return problem;
 }
 

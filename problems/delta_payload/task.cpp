@@ -94,6 +94,8 @@ ControlTask make_task(const toml_file::Document& document) {
     scene.position = parameters.centre;
     scene.reference = path;
     task.scenery = delta::scene_scenery(scene);
+    task.scenery.plots = {{.title = "Motor torques", .unit = "N m", .columns = {"torque1", "torque2", "torque3"}},
+                          {.title = "Motor rates", .unit = "rad/s", .columns = {"v11", "v21", "v31"}}};
   } catch (const std::invalid_argument& error) {
     throw InputError(table.position("robot"), error.what());
   }
