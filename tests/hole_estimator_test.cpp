@@ -62,7 +62,7 @@ class Touches {
   std::mt19937 random_{5};
 };
 
-// Friction is a third and more of what a sliding peg feels: its sign must not decide which block pushes.
+// A sliding peg feels friction as a wall on its other side would push it: its sign must not decide which block pushes.
 TEST(ContactEvidence, ATouchThatFrictionCanExplainSpeaksAgainstNoTruePlace) {
   const Geometry geometry;
   Touches touches(geometry);
