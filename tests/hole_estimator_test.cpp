@@ -1,4 +1,6 @@
 // Where the hole is: what speaks against a place, how near the estimate comes, and whether it is as sure as it is right, at every tick.
+#include "tenon/problems/peg_in_hole/hole_estimator.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +11,6 @@
 #include "tenon/mpc/task_controllers.hpp"
 #include "tenon/problems/peg_in_hole/channels.hpp"
 #include "tenon/problems/peg_in_hole/contact_evidence.hpp"
-#include "tenon/problems/peg_in_hole/hole_estimator.hpp"
 #include "tenon/problems/tasks.hpp"
 #include "tenon/solvers/newton_kkt/make_newton_kkt.hpp"
 
@@ -61,7 +62,7 @@ class Touches {
   std::mt19937 random_{5};
 };
 
-// Friction is a third and more of what a sliding peg feels: its sign must not decide which block pushes.
+// A sliding peg feels friction as a wall on its other side would push it: its sign must not decide which block pushes.
 TEST(ContactEvidence, ATouchThatFrictionCanExplainSpeaksAgainstNoTruePlace) {
   const Geometry geometry;
   Touches touches(geometry);
@@ -198,8 +199,9 @@ void expect_honest(Loop& loop, const std::vector<int>& worlds) {
   EXPECT_LE(quantile(values, 0.99), 11.3);
 }
 
-// Worlds in which an estimator that tells the side of a push by the sign of F_x takes friction for a wall: the peg slides on a flat, or rests on
-// that of a low hole (124, 126, 298, 300, 350, 424). Then one that jams (243), and one that a grid sharper than its cells gets wrong (134).
+// Worlds in which an estimator that tells the side of a push by the sign of F_x takes friction for a wall: the peg slides on a flat, or
+// rests on that of a low hole (124, 126, 298, 300, 350, 424). Then one that jams (243), and one that a grid sharper than its cells gets
+// wrong (134).
 TEST(HoleEstimator, IsNeverCertainOfAWrongPlaceOnTheWay) {
   Loop tight("peg-in-hole-tight");
   expect_honest(tight, {27, 43, 79, 124, 126, 130, 134, 168, 243, 282, 298, 300, 350, 362, 424, 462, 496});

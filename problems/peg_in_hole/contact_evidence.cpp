@@ -10,23 +10,17 @@ namespace tenon::peg {
 namespace {
 
 constexpr float kGapDeviation = 0.05F;    // mm, sigma
-constexpr float kCompression = 0.03F;     // mm, c: a contact of 200 N/mm gives way that much to 6 N, as in a jam
+constexpr float kCompression = 0.05F;     // mm, c: what a contact of 200 N/mm gives way to the 10 N that the spring may push with
 constexpr float kForceDeviation = 0.3F;   // N, sigma_F: noise and lag of the force
 constexpr float kLargestFriction = 0.5F;  // mu
-constexpr float kBoth = 1;                // against two blocks at once: they can explain nearly any force
-constexpr float kUnexplained = 4;         // never more against a place than this: an outlier's probability is e^-4
+constexpr float kBoth = 1;                // e_2: two blocks at once can explain nearly any force
+constexpr float kUnexplained = 4;         // e_o: a force speaks no louder against a place, since it may be an outlier
 
-constexpr float kGapUnit = 1 / (std::numbers::sqrt2_v<float> * kGapDeviation), kForceUnit = 1 / (std::numbers::sqrt2_v<float> * kForceDeviation);
+constexpr float kGapUnit = 1 / (std::numbers::sqrt2_v<float> * kGapDeviation),
+                kForceUnit = 1 / (std::numbers::sqrt2_v<float> * kForceDeviation);
 
 float squared(float value) {
   return value * value;
-}
-// By value: std::min and std::max keep a loop from being vectorised.
-float least(float a, float b) {
-  return a < b ? a : b;
-}
-float most(float a, float b) {
-  return a < b ? b : a;
 }
 
 /// at + by x
@@ -35,19 +29,20 @@ struct Line {
   float operator()(float x) const { return at + by * x; }
 };
 
-/// What friction cannot account for in a push by one face, squared; and by two, this one and one of the other block that may push
-/// against it: then only what lies beyond this face's cone on the far side from the other's.
+/// What friction cannot account for in a push by a face alone, squared; and in one that the other block helps with: the two cones together
+/// span all between them, so that only what lies beyond this one, away from the other block, is left. `away`: the push along the face.
 struct Cone {
   Cone(float normal, float away)
-      : alone(squared(most(0, std::abs(away) - kLargestFriction * normal))), helped(squared(most(0, away - kLargestFriction * normal))) {}
+      : alone(squared(std::max(0.0F, std::abs(away) - kLargestFriction * normal))),
+        helped(squared(std::max(0.0F, away - kLargestFriction * normal))) {}
   float alone, helped;
 };
 
 }  // namespace
 
-// Each distance is linear in the hole's x. Lengths in units of sqrt(2) sigma, moments about the contact's place in units of sqrt(2) sigma_F.
+// Each distance is linear in the hole's x. Lengths are in units of sqrt(2) sigma, moments, about a contact's place, of sqrt(2) sigma_F.
 struct ContactEvidence::Distances {
-  Line wall, chamfer, flat;  // of the corner, from the block's faces
+  Line wall, chamfer, flat;                                 // of the corner, from the block's faces
   Line lower_side, lower_bottom, upper_side, upper_bottom;  // of the block's vertices, from the peg's faces
   float corner_moment;
   Line lower_moment, upper_moment;
@@ -107,35 +102,40 @@ ContactEvidence::Distances ContactEvidence::distances(float s, float z, float ph
           .on_bottom = {along, across}};
 }
 
-void ContactEvidence::add(float z, float phi, float weight, Eigen::Ref<Eigen::ArrayXf> against) {
-  for (const float side : {-1.0F, 1.0F}) {
-    const Distances d = distances(side, z, phi);
-    Block& block = blocks_[side < 0 ? 0 : 1];
-    const float* const xs = x_.data();
-    float *const gaps = block.gap.data(), *const alone = block.alone.data(), *const helped = block.helped.data();
-    for (Eigen::Index i = 0; i < x_.size(); ++i) {
-      const float x = xs[i];
-      const float wall = d.wall(x), chamfer = d.chamfer(x), flat = d.flat(x);
-      const float lower_side = d.lower_side(x), lower_bottom = d.lower_bottom(x), upper_side = d.upper_side(x), upper_bottom = d.upper_bottom(x);
-      const float corner = most(most(wall, chamfer), flat), lower = most(lower_side, lower_bottom), upper = most(upper_side, upper_bottom);
-      gaps[i] = least(corner, least(lower, upper));
+void ContactEvidence::evaluate(const Distances& d, Block& block) const {
+  const float* const xs = x_.data();
+  float *const gaps = block.gap.data(), *const alone = block.alone.data(), *const helped = block.helped.data();
+  for (Eigen::Index i = 0; i < x_.size(); ++i) {
+    const float x = xs[i];
+    const float wall = d.wall(x), chamfer = d.chamfer(x), flat = d.flat(x);
+    const float lower_side = d.lower_side(x), lower_bottom = d.lower_bottom(x), upper_side = d.upper_side(x),
+                upper_bottom = d.upper_bottom(x);
+    const float corner = std::max(std::max(wall, chamfer), flat), lower = std::max(lower_side, lower_bottom),
+                upper = std::max(upper_side, upper_bottom);
+    gaps[i] = std::min(corner, std::min(lower, upper));
 
-      // how far from each contact, and from the face that is to push there
-      const float at_corner = squared(most(0, corner)), at_lower = squared(most(0, lower)), at_upper = squared(most(0, upper));
-      const float at_wall = squared(corner - wall), at_chamfer = squared(corner - chamfer), at_flat = squared(corner - flat);
-      const float at_lower_side = squared(lower - lower_side), at_lower_bottom = squared(lower - lower_bottom);
-      const float at_upper_side = squared(upper - upper_side), at_upper_bottom = squared(upper - upper_bottom);
-      const auto by_faces = [&](float Cone::*excess) {
-        return std::array<float, 3>{
-            at_corner + least(at_wall + d.on_wall.*excess, least(at_chamfer + d.on_chamfer.*excess, at_flat + d.on_flat.*excess)),
-            at_lower + least(at_lower_side + d.on_side.*excess, at_lower_bottom + d.on_bottom.*excess),
-            at_upper + least(at_upper_side + d.on_side.*excess, at_upper_bottom + d.on_bottom.*excess)};
-      };
-      const auto single = by_faces(&Cone::alone), shared = by_faces(&Cone::helped);
-      alone[i] = least(single[0] + squared(d.corner_moment), least(single[1] + squared(d.lower_moment(x)), single[2] + squared(d.upper_moment(x))));
-      helped[i] = least(shared[0], least(shared[1], shared[2]));
-    }
+    // how far from each contact, and from the face that is to push there
+    const float at_corner = squared(std::max(0.0F, corner)), at_lower = squared(std::max(0.0F, lower)),
+                at_upper = squared(std::max(0.0F, upper));
+    const float at_wall = squared(corner - wall), at_chamfer = squared(corner - chamfer), at_flat = squared(corner - flat);
+    const float at_lower_side = squared(lower - lower_side), at_lower_bottom = squared(lower - lower_bottom);
+    const float at_upper_side = squared(upper - upper_side), at_upper_bottom = squared(upper - upper_bottom);
+    const auto by_faces = [&](float Cone::*excess) {
+      return std::array<float, 3>{
+          at_corner + std::min(at_wall + d.on_wall.*excess, std::min(at_chamfer + d.on_chamfer.*excess, at_flat + d.on_flat.*excess)),
+          at_lower + std::min(at_lower_side + d.on_side.*excess, at_lower_bottom + d.on_bottom.*excess),
+          at_upper + std::min(at_upper_side + d.on_side.*excess, at_upper_bottom + d.on_bottom.*excess)};
+    };
+    const auto single = by_faces(&Cone::alone), shared = by_faces(&Cone::helped);
+    alone[i] = std::min(single[0] + squared(d.corner_moment),
+                        std::min(single[1] + squared(d.lower_moment(x)), single[2] + squared(d.upper_moment(x))));
+    helped[i] = std::min(shared[0], std::min(shared[1], shared[2]));
   }
+}
+
+void ContactEvidence::add(float z, float phi, float weight, Eigen::Ref<Eigen::ArrayXf> against) {
+  evaluate(distances(-1, z, phi), blocks_[0]);
+  evaluate(distances(1, z, phi), blocks_[1]);
   const auto& [left, right] = blocks_;
   const float nobody = squared(force_x_) + squared(force_z_) + squared(moment_);
   against += weight * ((left.gap.min(right.gap) + kGapUnit * kCompression).min(0.0F).square() +

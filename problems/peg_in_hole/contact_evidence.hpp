@@ -2,8 +2,8 @@
 //
 //     e = min(0, smallest gap + c)^2 / (2 sigma^2) + least over who pushes { nobody, the left block, the right one, both }
 //
-// The peg cannot be inside a block. Whoever pushes is near, pushes in a direction that its face and friction allow, and along a line through
-// the place of contact. Equations: peg_in_hole.md, section 4.
+// The peg cannot be inside a block. Whoever pushes is near, pushes in a direction that its face and friction allow, and along a line
+// through the place of contact. Equations: peg_in_hole.md, section 4.
 #pragma once
 
 #include <array>
@@ -29,11 +29,13 @@ class ContactEvidence {
     Eigen::ArrayXf gap, alone, helped;
   };
   struct Distances;
+  /// Of the block on the left (side = -1) or on the right (+1).
   Distances distances(float side, float z, float phi) const;
+  void evaluate(const Distances& distances, Block& block) const;
 
   Geometry geometry_;
   Eigen::ArrayXf x_;
-  std::array<Block, 2> blocks_;                 // left, right
+  std::array<Block, 2> blocks_;                        // left, right
   float pose_x_ = 0, pose_z_ = 0, cos_ = 1, sin_ = 0;  // of the peg
   float force_x_ = 0, force_z_ = 0, moment_ = 0;       // in units of sqrt(2) sigma_F
 };

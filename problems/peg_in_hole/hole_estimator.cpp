@@ -9,11 +9,11 @@ namespace tenon::peg {
 
 namespace {
 
-constexpr double kInterval = 0.02;   // s: what the evidence and the forgetting speak of
+constexpr double kInterval = 0.02;  // s: what the evidence and the forgetting speak of
 constexpr double kForgetting = 0.985;
-constexpr float kNegligible = 20;    // a weight of e^-20
-constexpr double kMargin = 1.2;      // of the grid beyond the prior's half width
-constexpr double kNear = 2;          // mm above the highest mouth there may be: the estimate begins
+constexpr float kNegligible = 20;  // a weight of e^-20
+constexpr double kMargin = 1.2;    // of the grid beyond the prior's half width
+constexpr double kNear = 2;        // mm above the highest mouth there may be: the estimate begins
 
 Eigen::ArrayXf axis(double middle, double half, int cells) {
   if (cells == 1) return Eigen::ArrayXf::Constant(1, static_cast<float>(middle));

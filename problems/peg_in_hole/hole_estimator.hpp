@@ -36,12 +36,12 @@ class HoleEstimator final : public Estimator {
   void summarise();
 
   HoleEstimatorOptions options_;
-  Eigen::ArrayXf x_, z_, phi_;           // mm, the middle of the cells
-  Eigen::ArrayXXf evidence_;             // against a cell; columns: x, all z of the first phi, all z of the next ...
+  Eigen::ArrayXf x_, z_, phi_;  // mm, the middle of the cells
+  Eigen::ArrayXXf evidence_;    // against a cell; columns: x, all z of the first phi, all z of the next ...
   Eigen::ArrayXXf prior_;
   ContactEvidence contacts_;
-  Eigen::ArrayXf weight_;                // of one column
-  Eigen::ArrayXf least_;                 // of each column: what speaks against its best place
+  Eigen::ArrayXf weight_;  // of one column
+  Eigen::ArrayXf least_;   // of each column: what speaks against its best place
   Vector3d mean_;
   Matrix3d covariance_;
   double last_ = 0;
