@@ -1,6 +1,7 @@
 // A peg and its hole: gaps that are right everywhere, plans that both solvers find, closed loops that end in the hole.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "tenon/core/input_error.hpp"
@@ -152,6 +153,24 @@ TEST(PegProgram, CommandsBeginAtTheReferenceAndKeepItsRateWithinLimits) {
   EXPECT_EQ(commands.segment<3>(kReferenceRate).norm(), 0) << "beyond the plan the reference holds still";
 }
 
+TEST(PegProgram, ItsInitialPointObeysTheDynamicsAndGoesRoundTheBlocks) {
+  constexpr int kDynamics = 12, kRows = 24;
+  AssemblyProblem problem;
+  problem.pose = {1.8, 0.05, 0.3};  // over the flat beside the hole
+  const AssemblyProgram program(problem);
+  Vector x(program.num_variables()), rows(program.num_constraints());
+  program.initial_point(x);
+  auto workspace = program.make_workspace();
+  program.prepare(x, workspace);
+  program.constraints(x, workspace, rows);
+  for (int k = 0; k < problem.intervals; ++k) {
+    EXPECT_LE(rows.segment<kDynamics>(kRows * k).lpNorm<Eigen::Infinity>(), 1e-12) << "interval " << k;
+    for (const ExactGap& gap : exact_gaps(problem.geometry, x.segment<3>(kStage * (k + 1)), problem.hole))
+      EXPECT_GE(gap.value, -1e-12) << "at the end of interval " << k;
+  }
+  EXPECT_LT(x[kStage * problem.intervals + 1], -1) << "and into the hole";
+}
+
 TEST(PegProgram, AsksForAFreshStartOnceThePegIsJammed) {
   AssemblyProgram program{AssemblyProblem{}};
   const Vector y = measured({0, -3, 0}, {0, -3.5, 0}, {0, 0, 0});
@@ -300,6 +319,21 @@ TEST(PegLoop, ATickAllocatesNothing) {
     task.plant->advance((tick + 1) * task.period, commands);
   }
   EXPECT_EQ(allocations, 0);
+}
+
+TEST(PegLoop, NoTickTakesManyIterationsTheFirstIncluded) {
+  ControlTask task = tenon::make_task("peg-in-hole-tight");
+  const auto controller = take_controller(task, "mpc", newton_kkt);
+  ClosedLoop loop(*task.plant, *controller, task.duration);
+  for (const std::uint64_t seed : {1u, 7u}) {  // both feel the flat first, and begin again from there
+    std::vector<int> iterations;
+    loop.run(seed, [&](const Vector&) {
+      iterations.push_back(controller->last_step().iterations);
+      return true;
+    });
+    EXPECT_EQ(iterations.front(), 1) << "goes on from the plan made ahead";
+    EXPECT_EQ(*std::max_element(iterations.begin(), iterations.end()), 6);
+  }
 }
 
 TEST(PegTask, SaysWhatIsWrongInItsFile) {
