@@ -4,6 +4,7 @@
 // it, the truth included, is not read.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -60,14 +61,17 @@ Eigen::MatrixXd covariance_of(const Estimator& estimator) {
 }
 
 /// Of a scene's picture what an estimator alone can tell: no bodies, no truth.
-Scenery belief_scenery(const ControlTask& task) {
+Scenery belief_scenery(const ControlTask& task, const Estimator& estimator) {
   Scenery scenery;
   scenery.title = task.name + ": what is estimated";
   scenery.estimates = task.scenery.estimates;
   for (SceneryEstimate& estimate : scenery.estimates) estimate.across.truth = estimate.upward.truth = "";
-  for (const SceneryPlot& plot : task.scenery.plots) {
-    for (const SceneryPlot::Band& band : plot.bands)
-      scenery.plots.push_back({.title = band.mean + " and 2 standard deviations", .unit = plot.unit, .columns = {band.mean}, .bands = {band}});
+  for (int i = 0; i < estimator.num_estimates(); ++i) {
+    const std::string name = estimator.estimate_name(i);
+    scenery.plots.push_back({.title = name + " and 2 standard deviations", .columns = {name}, .bands = {{name, "cov_" + name + "_" + name}}});
+    for (const SceneryPlot& plot : task.scenery.plots) {
+      if (std::ranges::count(plot.columns, name) > 0) scenery.plots.back().unit = plot.unit;
+    }
   }
   return scenery;
 }
@@ -185,7 +189,7 @@ int run_estimate(const Arguments& arguments) {
     csv->end_row();
   }
   if (csv) csv->finish();
-  if (csv) write_scenery(belief_scenery(task), output);
+  if (csv) write_scenery(belief_scenery(task, estimator), output);
   make_report(arguments, {output});
 
   const std::vector<Belief> beliefs = list_of(estimator, prior);
