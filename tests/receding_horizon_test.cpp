@@ -128,7 +128,8 @@ class Decisions : public testing::Test {
   RecedingHorizon& make(std::deque<Ending> endings, double period = kInterval, const Ending& ahead = {Status::infeasible, 1}) {
     script_.endings = {ahead};
     controller_ = std::make_unique<RecedingHorizon>(std::make_unique<Walk>(), nullptr, script_.factory(), HorizonOptions(), period);
-    script_ = {std::move(endings)};
+    script_ = Script();
+    script_.endings = std::move(endings);
     return *controller_;
   }
   double update(double t, double x = 0) {
