@@ -5,8 +5,6 @@
 // Old evidence fades, the prior does not. Equations: peg_in_hole.md, section 4.
 #pragma once
 
-#include <vector>
-
 #include "tenon/core/estimator.hpp"
 #include "tenon/problems/peg_in_hole/contact_evidence.hpp"
 #include "tenon/problems/peg_in_hole/plant.hpp"
