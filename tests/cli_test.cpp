@@ -111,6 +111,8 @@ TEST_F(CommandLine, ANonUnitAxisIsNotedAndUsed) {
 
 TEST_F(CommandLine, RefusesBadUsage) {
   expect_bad_input("", "no verb");
+  expect_bad_input("simulate peg-in-hole", "peg-in-hole: not a scene for simulate (it is for mpc, plan, estimate, sweep)");
+  expect_bad_input("mpc cradle", "cradle: not a scene for mpc (it is for simulate)");
   expect_bad_input("alocate", "unknown verb 'alocate', the nearest is 'allocate'");
   expect_bad_input("allocate momav", "allocate: nothing to allocate (expected --wrenches FILE.csv)");
   expect_bad_input("allocate --wrenches x", "allocate: nothing named (expected VEHICLE)");
