@@ -154,9 +154,10 @@ TEST(StageKkt, ReportsAZeroEigenvalueForADependentRowAndSurvivesIt) {
 }
 
 TEST(StageKkt, IsOfConstantSizeWhereTheStagesAre) {
-  for (const bool indefinite : {false, true}) {
+  for (const auto& [indefinite, inequalities] : {std::pair{false, 0}, {true, 0}, {false, 2}, {true, 5}}) {
     StageGenerator generator(3);
-    const StageInstance instance = generator.make({.intervals = 6, .states = 6, .inputs = 3, .indefinite = indefinite});
+    const StageInstance instance =
+        generator.make({.intervals = 6, .states = 6, .inputs = 3, .inequalities = inequalities, .indefinite = indefinite});
     StageKkt<StageSizes<6, 3>> fixed(instance.stages, instance.hessian_pattern, instance.jacobian_pattern);
     StageKkt<> dynamic(instance.stages, instance.hessian_pattern, instance.jacobian_pattern);
     expect_conforms<StageKkt<StageSizes<6, 3>>>(instance, generator);

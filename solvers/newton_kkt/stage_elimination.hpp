@@ -13,18 +13,19 @@
 
 namespace tenon {
 
-/// States: of this stage and of the next one; Locals: what is eliminated here.
+/// States: of this stage and of the next one; Locals: what is eliminated here. The other rows are as many as the stage has.
 template <int States, int Locals>
 class RegularStage {
  public:
   explicit RegularStage(const StageBlocks& blocks) : b_(blocks) {}
 
   static bool fits(const StageBlocks& b) {
-    return States == Dynamic || (b.states == States && b.next_states == States && b.locals == Locals && b.rows == 0);
+    return States == Dynamic || (b.states == States && b.next_states == States && b.locals == Locals);
   }
   /// Numbers that `scratch` must hold.
   static std::size_t scratch_size(const StageBlocks& b) {
-    return panel_size(b.next_states, b.states + b.locals) + panel_size(b.states, b.locals) + lanes_of(b.next_states) + lanes_of(b.locals);
+    return panel_size(b.next_states, b.states + b.locals) + panel_size(b.states, b.locals) + panel_size(b.states, b.rows) +
+           panel_size(b.locals, b.rows) + lanes_of(b.next_states) + lanes_of(b.locals);
   }
 
   /// next_value: P of the next stage; d: compliance of the other rows, > 0. False where M_ll is not clearly positive.
@@ -32,20 +33,34 @@ class RegularStage {
     double* t_l = scratch;
     double* t_s = t_l + next_stride() * locals();
     double* w = t_s + next_stride() * states();
+    double* e_l = w + state_stride() * locals();  // D^-1 C, transposed
+    double* e_s = e_l + local_stride() * rows();
+    for (int r = 0; r < rows(); ++r) {
+      scale(b_.c_l + r * local_stride(), 1 / d[r], e_l + r * local_stride(), local_stride());
+      scale(b_.c_s + r * state_stride(), 1 / d[r], e_s + r * state_stride(), state_stride());
+    }
     stage::product(next_value, next_stride(), {b_.a_l, 1, next_stride()}, next(), t_l, next_stride(), next(), locals());
     stage::product(next_value, next_stride(), {b_.a_s, 1, next_stride()}, next(), t_s, next_stride(), next(), states());
-    stage::add_product(b_.h_ll, b_.at_l, local_stride(), {t_l, 1, next_stride()}, next(), b_.l_ll, local_stride(), locals(), locals());
-    stage::add_product(b_.h_sl, b_.at_s, state_stride(), {t_l, 1, next_stride()}, next(), w, state_stride(), states(), locals());
-    const double* h_ss = b_.h_ss;
-    if (States == Dynamic && b_.rows > 0) {
-      add_rows(d, w);
-      h_ss = b_.value;
-    }
+    stage::over_tiles(
+        locals(), locals(), false, [&](auto tile, int i, int j) __attribute__((always_inline)) {
+          tile.read(b_.h_ll + i + j * local_stride(), local_stride());
+          tile.add(b_.at_l + i, local_stride(), {t_l + j * next_stride(), 1, next_stride()}, next());
+          tile.add(b_.c_l + i, local_stride(), {e_l + j, local_stride(), 1}, rows());
+          tile.write(b_.l_ll + i + j * local_stride(), local_stride());
+        });
+    stage::over_tiles(
+        states(), locals(), false, [&](auto tile, int i, int j) __attribute__((always_inline)) {
+          tile.read(b_.h_sl + i + j * state_stride(), state_stride());
+          tile.add(b_.at_s + i, state_stride(), {t_l + j * next_stride(), 1, next_stride()}, next());
+          tile.add(b_.c_s + i, state_stride(), {e_l + j, local_stride(), 1}, rows());
+          tile.write(w + i + j * state_stride(), state_stride());
+        });
     if (!factor_locals(w)) return false;
     stage::over_tiles(
         states(), states(), true, [&](auto tile, int i, int j) __attribute__((always_inline)) {
-          tile.read(h_ss + i + j * state_stride(), state_stride());
+          tile.read(b_.h_ss + i + j * state_stride(), state_stride());
           tile.add(b_.at_s + i, state_stride(), {t_s + j * next_stride(), 1, next_stride()}, next());
+          tile.add(b_.c_s + i, state_stride(), {e_s + j, state_stride(), 1}, rows());
           tile.add(w + i, state_stride(), {b_.gain + j, state_stride(), 1}, locals(), -1);
           tile.write(b_.value + i + j * state_stride(), state_stride());
         });
@@ -141,30 +156,16 @@ class RegularStage {
   int states() const { return States == Dynamic ? b_.states : States; }
   int next() const { return States == Dynamic ? b_.next_states : States; }
   int locals() const { return States == Dynamic ? b_.locals : Locals; }
-  int rows() const { return States == Dynamic ? b_.rows : 0; }
+  int rows() const { return b_.rows; }
   int state_stride() const { return lanes::padded<double>(states()); }
   int next_stride() const { return lanes::padded<double>(next()); }
   int local_stride() const { return lanes::padded<double>(locals()); }
 
+  static void scale(const double* from, double factor, double* to, int size) {
+    for (int i = 0; i < size; i += 4) lanes::Map<double>(to + i) = factor * lanes::ConstMap<double>(from + i);
+  }
   static void copy(const double* from, double* to, int size) {
     for (int i = 0; i < size; i += 4) lanes::Map<double>(to + i) = lanes::ConstMap<double>(from + i);
-  }
-
-  // M += C' D^-1 C: into l_ll, w, and value in the place of h_ss
-  void add_rows(const double* d, double* w) const {
-    for (int i = 0; i < state_stride() * states(); i += 4) lanes::Map<double>(b_.value + i) = lanes::ConstMap<double>(b_.h_ss + i);
-    for (int r = 0; r < b_.rows; ++r) {
-      const double *c_l = b_.c_l + r * local_stride(), *c_s = b_.c_s + r * state_stride();
-      for (int j = 0; j < locals(); ++j) {
-        const double scaled = c_l[j] / d[r];
-        stage::add_times(c_l, local_stride(), &scaled, locals(), 1, b_.l_ll + j * local_stride());
-        stage::add_times(c_s, state_stride(), &scaled, states(), 1, w + j * state_stride());
-      }
-      for (int j = 0; j < states(); ++j) {
-        const double scaled = c_s[j] / d[r];
-        stage::add_times(c_s, state_stride(), &scaled, states(), 1, b_.value + j * state_stride());
-      }
-    }
   }
 
   // l_ll: M_ll becomes L; w: M_sl becomes G D; gain: G

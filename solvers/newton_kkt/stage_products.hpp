@@ -104,17 +104,6 @@ template <class Visit>
       });
 }
 
-/// c = c0 + a b, c0 and c of one shape.
-[[gnu::always_inline]] inline void add_product(const double* c0, const double* a, int a_stride, const Factor& b, int depth, double* c,
-                                               int c_stride, int rows, int columns) {
-  over_tiles(
-      rows, columns, false, [&](auto tile, int i, int j) __attribute__((always_inline)) {
-        tile.read(c0 + i + j * c_stride, c_stride);
-        tile.add(a + i, a_stride, {b.data + j * b.column_step, b.row_step, b.column_step}, depth);
-        tile.write(c + i + j * c_stride, c_stride);
-      });
-}
-
 /// y += sign a x: rows in whole lanes. Even and odd columns are summed apart, so that the sums need not wait for one another.
 [[gnu::always_inline]] inline void add_times(const double* a, int stride, const double* x, int rows, int columns, double* y,
                                              double sign = 1) {
