@@ -36,8 +36,9 @@ TEST(PegGeometry, ASmoothGapLiesAboveTheExactOneByAtMostItsSmoothing) {
   for (int sample = 0; sample < 2000; ++sample) {
     const Vector3d pose = random_pose(random, {12, 25, 4}), hole = random_pose(random, {2, 1, 1});
     const auto gaps = exact_gaps(geometry, pose, hole);
-    for (int i = 0; i < kContacts; ++i) {
-      const double exact = gaps[static_cast<std::size_t>(i)].value, smooth = smooth_gap(geometry, kDelta, i, pose, hole).value;
+    const auto smoothed = smooth_gaps(geometry, kDelta, pose, hole);
+    for (std::size_t i = 0; i < kContacts; ++i) {
+      const double exact = gaps[i].value, smooth = smoothed[i].value;
       EXPECT_GE(smooth, exact);
       EXPECT_LE(smooth, exact + kDelta);  // two roundings of delta/2 each
     }
@@ -183,6 +184,19 @@ TEST(PegProgram, AsksForAFreshStartOnceThePegIsJammed) {
   EXPECT_EQ(asked, 3) << "once every 0.16 s";
   program.observe(0, y, Vector::Zero(3));
   EXPECT_FALSE(program.wants_fresh_start()) << "a new run begins";
+}
+
+TEST(PegProgram, AsksForAFreshStartWhereTheHoleTurnsOutToBeElsewhere) {
+  AssemblyProgram program{AssemblyProblem{}};
+  const auto asks = [&](double t, double hole_x) {
+    program.observe(t, measured({0, 5 - 25 * t, 0}, {0, 5 - 25 * t, 0}, {0, 0, 0}), Vector3d(1e-3 * hole_x, 0, 0));
+    return program.wants_fresh_start();
+  };
+  EXPECT_FALSE(asks(0.00, 0));
+  EXPECT_FALSE(asks(0.02, 0.2)) << "what a plan can follow";
+  EXPECT_TRUE(asks(0.04, 1.2));
+  EXPECT_FALSE(asks(0.06, 1.2)) << "once for each surprise";
+  EXPECT_FALSE(asks(0.00, 0)) << "a new run begins";
 }
 
 struct Outcome {

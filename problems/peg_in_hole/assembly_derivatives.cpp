@@ -44,10 +44,10 @@ void AssemblyProgram::prepare(ConstVectorRef x, Workspace& workspace) const {
     const Eigen::Map<const Vector3d> q(stage + kPose), v(stage + kVelocity), e(stage + kSpring), w(stage + kNext);
     const Eigen::Map<const Vector6> lambda(stage + kForces);
     const Vector3d end = q + step_ * w;
+    at.gap = smooth_gaps(problem_.geometry, problem_.smoothing, end, hole_);
     at.curvature.setZero();
     for (int i = 0; i < kContacts; ++i) {
-      Jet& gap = at.gap[static_cast<std::size_t>(i)];
-      gap = smooth_gap(problem_.geometry, problem_.smoothing, i, end, hole_);
+      const Jet& gap = at.gap[static_cast<std::size_t>(i)];
       at.g.col(i) = gap.gradient;
       at.curvature += lambda[i] * gap.hessian;
     }
@@ -204,10 +204,11 @@ void AssemblyProgram::hessian(ConstVectorRef x, double sigma, ConstVectorRef mul
     h.noalias() = rows * rows.transpose();
     if (sigma < 0) h = -h;
 
+    const Vector3d end = x.segment<3>(kStage * k + kPose) + step_ * x.segment<3>(kStage * k + kNext);
+    const std::array<Jet, kContacts> gaps = smooth_gaps(problem_.geometry, problem_.smoothing, end, hole_, y);
     Matrix3d by_pose = Matrix3d::Zero();
     for (int i = 0; i < kContacts; ++i) {
-      const Jet gap = smooth_gap(problem_.geometry, problem_.smoothing, i, x.segment<3>(kStage * k) + step_ * x.segment<3>(kStage * k + kNext),
-                                 hole_, y);
+      const Jet& gap = gaps[static_cast<std::size_t>(i)];
       by_pose += lambda[i] * gap.along + (by_row[kGaps + i] + lambda[i] * by_row[kProducts + i]) * gap.hessian;
       const Vector3d cross = gap.hessian * y + by_row[kProducts + i] * gap.gradient;
       h.block<1, 3>(kForces + i, kPose) += cross.transpose();

@@ -14,6 +14,7 @@ namespace {
 constexpr double kUnitOfRate = 100;  // mm/s
 constexpr double kLateralShare = 0.5;  // of the largest rate: how fast the initial point goes to the hole's axis
 constexpr double kProgress = 0.5, kPatience = 0.15;  // mm, s: less than so much in so long is a jam
+constexpr double kSurprise = 0.3;  // mm: a hole that moves further between two ticks has a plan of its own (peg_in_hole.md, section 2)
 
 }  // namespace
 
@@ -49,7 +50,9 @@ void AssemblyProgram::observe(double t, ConstVectorRef measurements, ConstVector
   velocity_ = to_millimetres(measurements.segment<3>(kMeasuredVelocity), lever) / kUnitOfRate;
   spring_ = to_millimetres(measurements.segment<3>(kMeasuredReference), lever) - pose_;
   rate_ = to_millimetres(measurements.segment<3>(kMeasuredRate), lever) / kUnitOfRate;
+  const Vector3d believed = hole_;
   hole_ = to_millimetres(estimates, lever);
+  hole_has_moved_ = t > progress_time_ && (hole_ - believed).lpNorm<Eigen::Infinity>() > kSurprise;
   if (problem_.follow_hole) lateral_ = hole_;
   watch_progress(t);
 }

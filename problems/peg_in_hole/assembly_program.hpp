@@ -47,8 +47,9 @@ class AssemblyProgram final : public HorizonProgram {
 
   /// Measurements and estimates as in channels.hpp.
   void observe(double t, ConstVectorRef measurements, ConstVectorRef estimates) override;
-  /// Where the peg has got no further for a while: a plan that stays where it is may be a local optimum, and tends to remain one.
-  bool wants_fresh_start() const override { return is_jammed_; }
+  /// Where the peg has got no further for a while: a plan that stays where it is may be a local optimum, and tends to remain one. And where
+  /// the hole turns out to be elsewhere: the plan for the former place goes through a wall.
+  bool wants_fresh_start() const override { return is_jammed_ || hole_has_moved_; }
   void commands(const Point& plan, double elapsed, VectorRef commands) const override;
   std::string command_name(int i) const override;
   /// Where the peg is at the end of each interval: x, z (m), theta (rad).
@@ -96,7 +97,7 @@ class AssemblyProgram final : public HorizonProgram {
   double step_;             // c, mm for each 100 mm/s
   Vector3d pose_, velocity_, spring_, rate_, hole_, lateral_;
   double progress_height_ = 0, progress_time_ = 0;  // mm, s: where and when the peg was last seen to have got on
-  bool is_jammed_ = false;
+  bool is_jammed_ = false, hole_has_moved_ = false;
 };
 
 /// A single plan of 1.2 s into a hole that lies 0.9 mm and 1 degree beside the peg's path.

@@ -10,20 +10,28 @@ namespace {
 constexpr double kFar = 1e9;  // mm
 
 struct Turn {
-  explicit Turn(double theta) : c(std::cos(theta)), s(std::sin(theta)) {}
+  Turn(double cosine, double sine) : c(cosine), s(sine) {}
+  explicit Turn(double theta) : Turn(std::cos(theta), std::sin(theta)) {}
   Vector2d out(const Vector2d& v) const { return {c * v[0] - s * v[1], s * v[0] + c * v[1]}; }
   Vector2d in(const Vector2d& v) const { return {c * v[0] + s * v[1], -s * v[0] + c * v[1]}; }
   double c, s;
 };
 
+/// Where the peg is beside the hole: what all gaps share.
+struct Placement {
+  Placement(const Geometry& g, const Vector3d& pose, const Vector3d& hole)
+      : of_peg(pose[2] / g.lever), of_hole(hole[2] / g.lever), from_hole(pose.head<2>() - hole.head<2>()), by_phi(1 / g.lever) {}
+  Turn of_peg, of_hole;
+  Vector2d from_hole;
+  double by_phi;  // 1/mm, of an angle
+};
+
 /// n . p + offset in the hole's axes, p a corner of the peg:  hole' R(-theta_h) (q + R(theta) corner - o)                             (1.3)
-Jet corner_face(const Geometry& g, const Vector3d& pose, const Vector3d& hole, double corner, const Vector2d& n, double offset,
-                const Vector3d& y) {
-  const Turn of_hole(hole[2] / g.lever), between((pose[2] - hole[2]) / g.lever);
-  const Vector2d normal = of_hole.out(n), arm = corner * Vector2d(between.c, between.s), turned = corner * Vector2d(-between.s, between.c);
-  const double along_arm = n.dot(arm), along_turned = n.dot(turned), by_phi = 1 / g.lever;
+Jet corner_face(const Placement& at, double corner, const Vector2d& n, double offset, const Vector3d& y) {
+  const Vector2d normal = at.of_hole.out(n), arm = corner * Vector2d(at.of_peg.c, at.of_peg.s), turned(-arm[1], arm[0]);
+  const double along_arm = normal.dot(arm), along_turned = normal.dot(turned), by_phi = at.by_phi;
   Jet jet;
-  jet.value = normal.dot(pose.head<2>() - hole.head<2>()) + along_arm + offset;
+  jet.value = normal.dot(at.from_hole) + along_arm + offset;
   jet.gradient << normal, along_turned * by_phi;
   jet.hessian.setZero();
   jet.hessian(2, 2) = -along_arm * by_phi * by_phi;
@@ -33,12 +41,10 @@ Jet corner_face(const Geometry& g, const Vector3d& pose, const Vector3d& hole, d
 }
 
 /// n . b + offset in the peg's axes, b = R(-theta) (o + R(theta_h) vertex - q)                                                       (1.4)
-Jet vertex_face(const Geometry& g, const Vector3d& pose, const Vector3d& hole, const Vector2d& vertex, const Vector2d& n, double offset,
-                const Vector3d& y) {
-  const Turn of_hole(hole[2] / g.lever), of_peg(pose[2] / g.lever);
-  const Vector2d from_peg = hole.head<2>() + of_hole.out(vertex) - pose.head<2>();
-  const Vector2d normal = of_peg.out(n), turned(-normal[1], normal[0]);  // d normal / d theta
-  const double by_phi = 1 / g.lever, along = normal.dot(from_peg), across = turned.dot(from_peg);
+Jet vertex_face(const Placement& at, const Vector2d& vertex, const Vector2d& n, double offset, const Vector3d& y) {
+  const Vector2d from_peg = at.of_hole.out(vertex) - at.from_hole;
+  const Vector2d normal = at.of_peg.out(n), turned(-normal[1], normal[0]);  // d normal / d theta
+  const double by_phi = at.by_phi, along = normal.dot(from_peg), across = turned.dot(from_peg);
   Jet jet;
   jet.value = along + offset;
   jet.gradient << -normal, across * by_phi;
@@ -100,30 +106,30 @@ Pair pair_of(const Geometry& g, int contact) {
 
 }  // namespace
 
-Jet smooth_gap(const Geometry& g, double delta, int contact, const Vector3d& pose, const Vector3d& hole, const Vector3d& y) {
-  const Pair pair = pair_of(g, contact);
-  const auto jet_of = [&](const Face& face) {
-    return is_corner(contact) ? corner_face(g, pose, hole, pair.point[0], face.n, face.offset, y)
-                              : vertex_face(g, pose, hole, pair.point, face.n, face.offset, y);
-  };
-  Jet jet = jet_of(pair.face[0]);
-  for (int k = 1; k < pair.faces; ++k) jet = smax(jet, jet_of(pair.face[static_cast<std::size_t>(k)]), delta, y);
-  return jet;
-}
-
-Jet smooth_gap(const Geometry& g, double delta, int contact, const Vector3d& pose, const Vector3d& hole) {
-  return smooth_gap(g, delta, contact, pose, hole, Vector3d::Zero());
+std::array<Jet, kContacts> smooth_gaps(const Geometry& g, double delta, const Vector3d& pose, const Vector3d& hole, const Vector3d& y) {
+  const Placement at(g, pose, hole);
+  std::array<Jet, kContacts> gaps;
+  for (int i = 0; i < kContacts; ++i) {
+    const Pair pair = pair_of(g, i);
+    const auto jet_of = [&](const Face& face) {
+      return is_corner(i) ? corner_face(at, pair.point[0], face.n, face.offset, y) : vertex_face(at, pair.point, face.n, face.offset, y);
+    };
+    Jet jet = jet_of(pair.face[0]);
+    for (int k = 1; k < pair.faces; ++k) jet = smax(jet, jet_of(pair.face[static_cast<std::size_t>(k)]), delta, y);
+    gaps[static_cast<std::size_t>(i)] = jet;
+  }
+  return gaps;
 }
 
 std::array<ExactGap, kContacts> exact_gaps(const Geometry& g, const Vector3d& pose, const Vector3d& hole) {
-  const Turn of_peg(pose[2] / g.lever), of_hole(hole[2] / g.lever);
+  const Placement at(g, pose, hole);
   const auto cross = [](const Vector2d& a, const Vector2d& b) { return a[0] * b[1] - a[1] * b[0]; };
   std::array<ExactGap, kContacts> gaps;
   for (int i = 0; i < kContacts; ++i) {
     const Pair pair = pair_of(g, i);
     const bool corner = is_corner(i);
-    const Vector2d arm = corner ? of_peg.out(pair.point) : Vector2d(hole.head<2>() + of_hole.out(pair.point) - pose.head<2>());
-    const Vector2d seen = corner ? of_hole.in(pose.head<2>() + arm - hole.head<2>()) : of_peg.in(arm);  // from the body with the faces
+    const Vector2d arm = corner ? at.of_peg.out(pair.point) : Vector2d(at.of_hole.out(pair.point) - at.from_hole);
+    const Vector2d seen = corner ? at.of_hole.in(at.from_hole + arm) : at.of_peg.in(arm);  // from the body with the faces
     double largest = -kFar;
     Vector2d n(0, 0);
     for (int k = 0; k < pair.faces; ++k) {
@@ -131,7 +137,7 @@ std::array<ExactGap, kContacts> exact_gaps(const Geometry& g, const Vector3d& po
       const double value = face.n.dot(seen) + face.offset;
       if (value > largest) largest = value, n = face.n;
     }
-    const Vector2d normal = corner ? of_hole.out(n) : Vector2d(-of_peg.out(n)), tangent(-normal[1], normal[0]);
+    const Vector2d normal = corner ? at.of_hole.out(n) : Vector2d(-at.of_peg.out(n)), tangent(-normal[1], normal[0]);
     gaps[static_cast<std::size_t>(i)] = {largest,
                                          {normal[0], normal[1], cross(arm, normal) / g.lever},
                                          {tangent[0], tangent[1], cross(arm, tangent) / g.lever}};

@@ -42,10 +42,9 @@ struct Jet {
   Matrix3d along;     // hess(gradient . y)
 };
 
-/// The smooth gap of a contact and its first two derivatives by the peg's pose; `hole` is the pose of the hole's mouth (top, middle).
-Jet smooth_gap(const Geometry& geometry, double smoothing, int contact, const Vector3d& pose, const Vector3d& hole);
-/// The third derivative along y too.
-Jet smooth_gap(const Geometry& geometry, double smoothing, int contact, const Vector3d& pose, const Vector3d& hole, const Vector3d& y);
+/// The smooth gaps and their first two derivatives by the peg's pose, the third one along y; `hole` is the pose of the hole's mouth (top, middle).
+std::array<Jet, kContacts> smooth_gaps(const Geometry& geometry, double smoothing, const Vector3d& pose, const Vector3d& hole,
+                                       const Vector3d& y = Vector3d::Zero());
 
 /// The unsmoothed gap, and how a unit push and a unit friction there act on the pose.
 struct ExactGap {
