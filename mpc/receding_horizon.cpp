@@ -1,6 +1,7 @@
 #include "tenon/mpc/receding_horizon.hpp"
 
 #include <chrono>
+#include <cmath>
 #include <stdexcept>
 
 #include "tenon/mpc/shift_plan.hpp"
@@ -29,6 +30,7 @@ RecedingHorizon::RecedingHorizon(std::unique_ptr<HorizonProgram> program, std::u
       cold_(make_solver(*program_, options.cold)),
       warm_(make_solver(*program_, options.warm)),
       largest_violation_(options.largest_violation),
+      delay_(options.delay),
       period_(period),
       ahead_(program_->num_variables(), program_->num_constraints()),
       plan_(ahead_),
@@ -39,6 +41,9 @@ RecedingHorizon::RecedingHorizon(std::unique_ptr<HorizonProgram> program, std::u
   if (!(period_ > 0) || period_ > (1 + kRounding) * program_->interval()) {
     throw std::invalid_argument("the period of a receding horizon is " + std::to_string(period_) + " s (expected more than 0, at most a stage, " +
                                 std::to_string(program_->interval()) + " s)");
+  }
+  if (!(delay_ >= 0) || !std::isfinite(delay_)) {
+    throw std::invalid_argument("the delay of a receding horizon is " + std::to_string(delay_) + " s (expected a finite one, at least 0)");
   }
   check("estimates", estimator_ ? estimator_->num_estimates() : 0, program_->num_estimates());
   if (estimator_) check("the estimator's measurements", estimator_->num_measurements(), program_->num_measurements());
@@ -76,7 +81,7 @@ void RecedingHorizon::update(double t, ConstVectorRef measurements, VectorRef co
   program_->observe(t, measurements, estimates_);
   shift_to(t);
   accept(t, solve_from_guess());
-  program_->commands(plan_, t - start_, commands_);
+  program_->commands(plan_, t - start_ + delay_, commands_);
   commands = commands_;
   log_.elapsed = std::chrono::duration<double>(Clock::now() - begin).count();
 }

@@ -5,6 +5,9 @@
 // A plan whose rows hold well enough is used, however its solve ended; else the plan before, shifted, is used further, and the next solve
 // starts afresh. So an infeasible horizon, a deadline or a solve gone wrong never leaves the plant without commands.
 //
+// Where commands act late by a known delay, commanded is what the plan has for the time at which they will act. The plan takes it that its
+// beginning is commanded, and that is so as far as the plan before was right.
+//
 // A controller plans before it is switched on: the first tick goes on from a plan made for what the program knows when it is built, where
 // the plant is expected to start and what is believed of it. Where the plant is elsewhere, so that no use can be made of that plan, the
 // first tick starts afresh.
@@ -62,7 +65,7 @@ class RecedingHorizon final : public Controller {
   std::unique_ptr<Estimator> estimator_;
   Stages stages_;
   std::unique_ptr<Solver> cold_, warm_;
-  double largest_violation_, period_;
+  double largest_violation_, delay_, period_;
 
   Point ahead_, plan_, trial_;
   double start_ = 0;

@@ -269,6 +269,15 @@ TEST(PegLoop, SucceedsInAWorldThatIsNotAsBelieved) {
   }
 }
 
+TEST(PegLoop, ADelayThatIsKnownCostsNoTime) {
+  const auto slowest = [](const std::vector<std::string>& delays) {
+    return quantile(run("peg-in-hole", "mpc", 10, delays), 1, [](const Outcome& out) { return out.time; });
+  };
+  const double none = slowest({}), known = slowest({"plant.delay=0.04", "horizon.delay=0.04"}), unknown = slowest({"plant.delay=0.04"});
+  EXPECT_LE(known, none + 0.1);
+  EXPECT_GE(unknown, none + 0.5);
+}
+
 TEST(PegLoop, TheTiltScriptNeverFailsAndSoftSpringsSeldom) {
   const std::vector<Outcome> tilt = run("peg-in-hole", "tilt", 40), soft = run("peg-in-hole", "soft", 40);
   EXPECT_TRUE(std::ranges::all_of(tilt, &Outcome::success));

@@ -127,7 +127,7 @@ class Decisions : public testing::Test {
   /// Of the plan made ahead no use can be made, unless it is given: the first tick begins from nothing.
   RecedingHorizon& make(std::deque<Ending> endings, double period = kInterval, const Ending& ahead = {Status::infeasible, 1}) {
     script_.endings = {ahead};
-    controller_ = std::make_unique<RecedingHorizon>(std::make_unique<Walk>(), nullptr, script_.factory(), HorizonOptions(), period);
+    controller_ = std::make_unique<RecedingHorizon>(std::make_unique<Walk>(), nullptr, script_.factory(), options_, period);
     script_ = Script();
     script_.endings = std::move(endings);
     return *controller_;
@@ -138,6 +138,7 @@ class Decisions : public testing::Test {
     return command[0];
   }
 
+  HorizonOptions options_;
   Script script_;
   std::unique_ptr<RecedingHorizon> controller_;
 };
@@ -211,6 +212,13 @@ TEST_F(Decisions, TicksFasterThanAnIntervalDoNotShift) {
   EXPECT_EQ(update(0.16), 203) << "its second";
 }
 
+TEST_F(Decisions, WhatActsLateIsWhatThePlanHasForThen) {
+  options_.delay = 2 * kInterval;
+  make({{Status::solved, 0, 100}, {Status::infeasible, 1}});
+  EXPECT_EQ(update(0), 105);
+  EXPECT_EQ(update(kInterval), 107) << "of the shifted plan too";
+}
+
 TEST_F(Decisions, WithoutAnyPlanTheInitialPointIsCommanded) {
   const auto& controller = make({{Status::infeasible, 1}, {Status::infeasible, 1}});
   EXPECT_EQ(update(0, 5), 5);
@@ -261,6 +269,11 @@ TEST_F(Decisions, ThePlanMadeAheadIsNeverCommandedToAPlantItWasNotMadeFor) {
   const auto& controller = make({{Status::infeasible, 1}, {Status::infeasible, 1}}, kInterval, {Status::solved, 0, 100});
   EXPECT_EQ(update(0, 5), 5) << "the initial point of what was observed";
   EXPECT_EQ(controller.last_step().source, PlanSource::initial);
+}
+
+TEST_F(Decisions, ADelayIsNotNegative) {
+  options_.delay = -kInterval;
+  EXPECT_MESSAGE(make({}), std::invalid_argument, "at least 0");
 }
 
 TEST_F(Decisions, APeriodLongerThanAStageIsRefused) {

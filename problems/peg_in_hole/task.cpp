@@ -83,12 +83,16 @@ std::unique_ptr<Plant> make_plant(const World& world, const std::optional<Holder
   return std::make_unique<PegPlant>(world);
 }
 
+std::optional<Table> horizon_table(const Table& root) {
+  return root.table("horizon", {"intervals", "interval", "speed", "smoothing", "complementarity", "delay"});
+}
+
 AssemblyProblem read_horizon(const Table& root, const World& world, const Geometry& believed) {
   AssemblyProblem problem;
   problem.geometry = believed;
   problem.pose = world.start;
   problem.depth += world.prior.half_width[1];
-  if (const auto table = root.table("horizon", {"intervals", "interval", "speed", "smoothing", "complementarity"})) {
+  if (const auto table = horizon_table(root)) {
     problem.intervals = positive_integer(*table, "intervals", problem.intervals);
     problem.interval = positive(*table, "interval", problem.interval);
     problem.speed = positive(*table, "speed", 0.025) / kMillimetre;
@@ -132,6 +136,7 @@ ControlTask make_task(const toml_file::Document& document) {
   task.options.cold = task.options.warm;
   task.options.cold.max_iterations = std::max(kColdIterations, task.options.warm.max_iterations);
   task.options.largest_violation = 0.5;
+  if (const auto table = horizon_table(root)) task.options.delay = not_negative(*table, "delay", 0);
 
   const Impedance soft{.stiffness = {0.5, 1, 2.5}};
   task.baselines.push_back({"straight", std::make_unique<StraightDown>(believed, problem.impedance, world.start, problem.depth, task.period)});
