@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 
 #include "tenon/apps/default_solver.hpp"
 #include "tenon/apps/exit_code.hpp"
@@ -14,44 +14,47 @@
 #include "tenon/apps/table.hpp"
 #include "tenon/core/csv.hpp"
 #include "tenon/core/explanation.hpp"
+#include "tenon/core/scenery.hpp"
 #include "tenon/problems/tasks.hpp"
 
 namespace tenon {
 
 namespace {
 
-/// "lambda[3]" of stage 3 is the column "lambda".
-std::string column_of(const std::string& variable) {
-  return variable.substr(0, variable.find('['));
-}
-
-/// Rows stay in FILE.partial where there is no plan. The last stage has states alone: its other cells are empty.
-void write_stages(const std::string& path, const HorizonProgram& program, const Vector& x, bool is_done) {
-  const Stages stages = program.stages();
-  const IndexRange first = stages.stages.front().variables;
-  std::vector<std::string> columns{"t"};
-  for (int i = first.begin; i < first.end; ++i) columns.push_back(column_of(program.variable_name(i)));
+/// Rows stay in FILE.partial where there is no plan.
+void write_trajectory(const std::string& path, const HorizonProgram& program, const Point& plan, bool is_done) {
+  std::vector<std::string> columns = program.trajectory_columns();
+  Vector values(static_cast<Eigen::Index>(columns.size()));
+  columns.insert(columns.begin(), "t");
   CsvWriter csv(path, columns);
-  for (std::size_t k = 0; k < stages.stages.size(); ++k) {
-    const IndexRange variables = stages.stages[k].variables;
-    csv << static_cast<double>(k) * program.interval();
-    for (int i = 0; i < first.size(); ++i) {
-      if (i < variables.size())
-        csv << x[variables.begin + i];
-      else
-        csv << "";
-    }
+  const int stages = static_cast<int>(program.stages().stages.size());
+  for (int k = 0; k < stages; ++k) {
+    csv << k * program.interval();
+    program.trajectory(plan, k, values);
+    for (const double value : values) csv << value;
     csv.end_row();
   }
   if (is_done) csv.finish();
+}
+
+/// The task's picture without what a plan does not have: other plans and estimates.
+Scenery scenery_of_plan(Scenery scenery, const std::vector<std::string>& columns) {
+  scenery.ghosts.clear(), scenery.ellipses.clear(), scenery.estimates.clear();
+  std::erase_if(scenery.bodies, [](const SceneryBody& body) { return body.outline; });
+  for (SceneryPlot& plot : scenery.plots) {
+    plot.foresights.clear(), plot.bands.clear();
+    std::erase_if(plot.columns, [&](const std::string& column) { return std::ranges::find(columns, column) == columns.end(); });
+  }
+  std::erase_if(scenery.plots, [](const SceneryPlot& plot) { return plot.columns.empty(); });
+  return scenery;
 }
 
 }  // namespace
 
 int plan_task(const Arguments& arguments) {
   const ControlTask task = make_task(arguments.names.front(), arguments.set);
-  if (!task.program) throw std::invalid_argument(task.name + ": has nothing to plan, its commands are a script");
-  const HorizonProgram& program = *task.program;
+  if (!task.whole_program) throw std::invalid_argument(task.name + ": has nothing to plan, its commands are a script");
+  const HorizonProgram& program = *task.whole_program;
   const std::string solver = arguments.solver.value_or(default_solver());
   Observers observers(arguments);
   Options options = arguments.options({.scaling = task.options.cold.scaling});
@@ -63,11 +66,13 @@ int plan_task(const Arguments& arguments) {
 
   const bool is_done = succeeded(result.status);
   const std::string output = arguments.output.empty() && !arguments.json ? "-" : arguments.output;
-  if (!output.empty()) write_stages(output, program, point.x, is_done);
-  if (is_done)
+  if (!output.empty()) write_trajectory(output, program, point, is_done);
+  if (is_done) {
+    write_scenery(scenery_of_plan(task.scenery, program.trajectory_columns()), arguments.output);
     make_report(arguments, {arguments.output, arguments.trace});
-  else if (!interrupted())
+  } else if (!interrupted()) {
     fmt::print(stderr, "tenon: {}: {}\n{}\n", task.name, to_string(result.status), explain(program, point, result).text());
+  }
   if (arguments.json) {
     print(Json::object()
               .set("schema", 1)

@@ -36,6 +36,13 @@ class HorizonProgram : public Nlp {
   virtual int num_plan_outputs() const { return 0; }
   virtual std::string plan_output_name(int i) const { return "plan" + std::to_string(i + 1); }
   virtual void plan_outputs(const Point& plan, VectorRef values) const { static_cast<void>(plan), static_cast<void>(values); }
+
+  /// A plan as a trajectory, in SI units and under the names of the plant's record: columns, and their values where stage k begins. The last
+  /// stage is the end; what is decided for intervals is there that of the last one.
+  virtual std::vector<std::string> trajectory_columns() const { return {}; }
+  virtual void trajectory(const Point& plan, int k, VectorRef values) const {
+    static_cast<void>(plan), static_cast<void>(k), static_cast<void>(values);
+  }
 };
 
 }  // namespace tenon

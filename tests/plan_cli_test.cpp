@@ -1,6 +1,9 @@
 // tenon plan, as a script sees it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "tenon/core/csv.hpp"
 #include "tenon/tests/run_tenon.hpp"
 
@@ -38,6 +41,37 @@ TEST_F(PlanVerb, TheResultIsOneObjectWithItsMesh) {
   for (const char* key : {"\"schema\": 1", "\"status\": \"solved\"", "\"points\": 2", "\"refinements\": ", "\"end_error\": {"}) {
     EXPECT_NE(ended.out.find(key), std::string::npos) << key << ended.out;
   }
+}
+
+// What a horizon looks ahead to for some tenths of a second is planned whole here: from the start to the end, in SI.
+TEST_F(PlanVerb, AnInsertionIsPlannedIntoTheHoleOfTheScene) {
+  const Ended ended = run("peg-in-hole --set offset_x=0.0014 --set offset_theta=0.03 --report plan.html");
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  const CsvTable table = read_csv(folder_.path("plan.csv"), {{"t", "x", "z", "theta", "hole_x", "depth", "energy", "lambda_corner_left",
+                                                              "gap_corner_left", "mode_corner_left", "reference_x"}, {}});
+  EXPECT_EQ(table["x"].front(), 0);
+  EXPECT_NEAR(table["z"].front(), 5e-3, 1e-12);
+  EXPECT_EQ(table["hole_x"].back(), 0.0014);
+  EXPECT_NEAR(table["theta"].back(), 0.03, 1e-3);
+  EXPECT_GE(table["depth"].back(), 0.0198) << "of 20 mm";
+  for (std::size_t row = 0; row < table["t"].size(); ++row) {
+    EXPECT_GE(table["gap_corner_left"][row], -1e-8);
+    EXPECT_LE(table["gap_corner_left"][row] * table["lambda_corner_left"][row], 1.01e-5);  // N m: [horizon] complementarity
+  }
+}
+
+TEST_F(PlanVerb, ATouchDownAndTheSoftWallsArePlannedToTheirEnds) {
+  EXPECT_EQ(run("delta-touch-down --output down.csv").code, 0);
+  const CsvTable down = read_csv(folder_.path("down.csv"), {{"z", "v", "lambda_plane", "gap_plane", "mode_plane"}, {}});
+  EXPECT_NEAR(down["z"].front(), 0.36, 1e-12);
+  EXPECT_NEAR(down["gap_plane"].back(), 0, 1e-5);
+  EXPECT_NEAR(down["lambda_plane"].back(), 5, 0.01);
+  const auto touch = static_cast<std::size_t>(std::ranges::find(down["mode_plane"], 2) - down["mode_plane"].begin());
+  EXPECT_LE(down["v"][touch], 0.015);
+  EXPECT_EQ(run("cart-pole-soft-walls --output walls.csv").code, 0);
+  const CsvTable walls = read_csv(folder_.path("walls.csv"), {{"x", "theta", "v", "omega", "lambda_right", "mode_right"}, {}});
+  EXPECT_NEAR(walls["theta"].front(), -0.5, 1e-12);
+  for (const char* state : {"x", "theta", "v", "omega"}) EXPECT_LE(std::abs(walls[state].back()), 1e-2) << state;
 }
 
 TEST_F(PlanVerb, WhatCannotBeMetIsNamedWithItsStageAndTime) {

@@ -11,7 +11,6 @@ namespace tenon::peg {
 
 namespace {
 
-constexpr double kUnitOfRate = 100;  // mm/s
 constexpr double kLateralShare = 0.5;  // of the largest rate: how fast the initial point goes to the hole's axis
 constexpr double kProgress = 0.5, kPatience = 0.15;  // mm, s: less than so much in so long is a jam
 constexpr double kSurprise = 0.3;  // mm: a hole that moves further between two ticks has a plan of its own (peg_in_hole.md, section 2)
@@ -40,9 +39,6 @@ int AssemblyProgram::num_measurements() const {
 int AssemblyProgram::num_commands() const {
   return kCommands;
 }
-std::string AssemblyProgram::command_name(int i) const {
-  return kCommandNames[static_cast<std::size_t>(i)];
-}
 
 void AssemblyProgram::observe(double t, ConstVectorRef measurements, ConstVectorRef estimates) {
   const double lever = problem_.geometry.lever;
@@ -61,32 +57,6 @@ void AssemblyProgram::watch_progress(double t) {
   const bool again = t <= progress_time_, moves = std::abs(pose_[1] - progress_height_) > kProgress;
   is_jammed_ = !again && !moves && t - progress_time_ > kPatience;
   if (again || moves || is_jammed_) progress_height_ = pose_[1], progress_time_ = t;
-}
-
-void AssemblyProgram::commands(const Point& plan, double elapsed, VectorRef commands) const {
-  const double place = std::clamp(elapsed / problem_.interval, 0.0, static_cast<double>(problem_.intervals));
-  const int k = std::min(static_cast<int>(place), problem_.intervals - 1);
-  const auto reference = [&](int stage) -> Vector3d {
-    return plan.x.segment<3>(kStage * stage + kPose) + plan.x.segment<3>(kStage * stage + kSpring);
-  };
-  const Vector3d from = reference(k), to = reference(k + 1);
-  const Vector3d rate = place < problem_.intervals ? Vector3d((to - from) / problem_.interval) : Vector3d::Zero();
-  const double lever = problem_.geometry.lever;
-  commands.segment<3>(kReference) = to_si(from + (place - k) * (to - from), lever);
-  commands.segment<3>(kReferenceRate) = to_si(rate, lever);
-  commands.segment<3>(kStiffness) = stiffness_to_si(problem_.impedance.stiffness, lever);
-}
-
-std::string AssemblyProgram::plan_output_name(int i) const {
-  constexpr std::array<const char*, 3> kNames{"plan_x", "plan_z", "plan_theta"};
-  return kNames[static_cast<std::size_t>(i / problem_.intervals)] + std::to_string(i % problem_.intervals + 1);
-}
-
-void AssemblyProgram::plan_outputs(const Point& plan, VectorRef values) const {
-  for (int k = 0; k < problem_.intervals; ++k) {
-    const Vector3d pose = to_si(plan.x.segment<3>(kStage * (k + 1) + kPose), problem_.geometry.lever);
-    for (int axis = 0; axis < 3; ++axis) values[axis * problem_.intervals + k] = pose[axis];
-  }
 }
 
 Stages AssemblyProgram::stages() const {

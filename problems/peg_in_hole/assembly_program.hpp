@@ -56,6 +56,8 @@ class AssemblyProgram final : public HorizonProgram {
   int num_plan_outputs() const override { return 3 * problem_.intervals; }
   std::string plan_output_name(int i) const override;
   void plan_outputs(const Point& plan, VectorRef values) const override;
+  std::vector<std::string> trajectory_columns() const override;
+  void trajectory(const Point& plan, int k, VectorRef values) const override;
 
   int num_variables() const override { return kStage * problem_.intervals + kStates; }
   int num_constraints() const override { return kRows * problem_.intervals; }
@@ -83,6 +85,7 @@ class AssemblyProgram final : public HorizonProgram {
   // of a stage: the pose q, its rate v, the spring r - q, the rate u of the reference in the interval before; then the rate w at the end of the
   // interval and the contact forces
   static constexpr int kPose = 0, kVelocity = 3, kSpring = 6, kRate = 9, kStates = 12, kNext = 12, kForces = 15, kStage = 21;
+  static constexpr double kUnitOfRate = 100, kMillimetre = 1e-3;  // mm/s; m
   static constexpr int kGaps = 12, kProducts = 18, kRows = 24;
 
   struct Contacts;

@@ -1,6 +1,7 @@
 #include "tenon/problems/peg_in_hole/task.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "tenon/problems/delta/robot_file.hpp"
@@ -102,6 +103,15 @@ AssemblyProblem read_horizon(const Table& root, const World& world, const Geomet
   return problem;
 }
 
+/// Long enough to get to the bottom, into the hole where it is.
+AssemblyProblem whole_insertion(AssemblyProblem problem, const World& world) {
+  constexpr double kSettling = 0.2;  // s
+  problem.hole = world.prior.middle;
+  const double way = problem.pose[1] - problem.hole[1] + problem.depth;
+  problem.intervals = static_cast<int>(std::ceil((way / problem.speed + kSettling) / problem.interval));
+  return problem;
+}
+
 }  // namespace
 
 ControlTask make_task(const toml_file::Document& document) {
@@ -123,6 +133,7 @@ ControlTask make_task(const toml_file::Document& document) {
   task.duration = positive(parameters, "duration", 5);
   task.plant = make_plant(world, holder);
   task.program = std::make_unique<AssemblyProgram>(problem);
+  task.whole_program = std::make_unique<AssemblyProgram>(whole_insertion(problem, world));
   task.estimator = std::make_unique<HoleEstimator>(belief);
   // The rows are well scaled as they are; a plan that is 0.5 mm or N off still moves the peg the right way.
   for (Options* options : task.options.all()) {

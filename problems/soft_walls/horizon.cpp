@@ -63,6 +63,22 @@ void Horizon::plan_outputs(const Point& plan, VectorRef values) const {
   }
 }
 
+std::vector<std::string> Horizon::trajectory_columns() const {
+  return {"x", "theta", "v", "omega", "tip", "lambda_right", "lambda_left", "gap_right", "gap_left", "mode_right", "mode_left", "u"};
+}
+
+void Horizon::trajectory(const Point& plan, int k, VectorRef values) const {
+  const State state = plan.x.segment<kStates>(kStage * k);
+  const double p = model_.tip().dot(state), wall = model_.parameters().wall, stiffness = model_.parameters().stiffness;
+  const double right = wall - p, left = wall + p;
+  values << state, p, stiffness * rounded(-right), stiffness * rounded(-left), right, left, right < 0 ? 2 : 0, left < 0 ? 2 : 0,
+      plan.x[kStage * std::min(k, intervals_ - 1) + kStates];
+}
+
+double Horizon::rounded(double s) const {
+  return (s + std::sqrt(s * s + rounding_ * rounding_)) / 2;
+}
+
 Stages Horizon::stages() const {
   Stages stages;
   for (int k = 0; k <= intervals_; ++k) {

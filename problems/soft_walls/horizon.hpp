@@ -29,6 +29,8 @@ class Horizon final : public HorizonProgram {
   int num_plan_outputs() const override { return 3 * intervals_; }
   std::string plan_output_name(int i) const override;
   void plan_outputs(const Point& plan, VectorRef values) const override;
+  std::vector<std::string> trajectory_columns() const override;
+  void trajectory(const Point& plan, int k, VectorRef values) const override;
 
   int num_variables() const override { return 5 * intervals_ + 4; }
   int num_constraints() const override { return 4 * intervals_; }
@@ -47,6 +49,8 @@ class Horizon final : public HorizonProgram {
   std::string variable_name(int i) const override;
 
  private:
+  double rounded(double s) const;
+
   Model model_;
   Weights weights_;
   int intervals_;

@@ -1,5 +1,7 @@
 #include "tenon/problems/soft_walls/task.hpp"
 
+#include <cmath>
+
 #include "tenon/problems/soft_walls/plant.hpp"
 #include "tenon/problems/toml/checked_keys.hpp"
 
@@ -97,8 +99,10 @@ ControlTask make_task(const toml_file::Document& document) {
   task.period = model.parameters().step;
   task.duration = positive(parameters, "duration", 6);
   task.plant = std::make_unique<WallsPlant>(model, weights, start, spread);
-  const int intervals = positive_integer(parameters, "intervals", 10);
-  task.program = std::make_unique<Horizon>(model, weights, intervals, positive(parameters, "rounding", 2e-3), start);
+  const int intervals = positive_integer(parameters, "intervals", 10), all = static_cast<int>(std::ceil(task.duration / task.period));
+  const double rounding = positive(parameters, "rounding", 2e-3);
+  task.program = std::make_unique<Horizon>(model, weights, intervals, rounding, start);
+  task.whole_program = std::make_unique<Horizon>(model, weights, all, rounding, start);
   // No inequality stands in this program: each iteration is a Newton step, and the rows are well scaled as they are.
   for (Options* options : task.options.all()) {
     options->tolerance = 1e-6;

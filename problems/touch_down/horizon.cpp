@@ -13,6 +13,7 @@ namespace {
 constexpr double kLength = 100, kSpeed = 10;
 constexpr double kTerminalPosition = 1, kTerminalSpeed = 0.1;
 constexpr double kLittleForce = 0.5;  // N
+constexpr double kPressing = 0.1;     // N: contact, of a trajectory
 
 enum Variable { kZ, kV, kBefore, kW, kLambda };
 enum ContactRow { kBarrier = 3, kForceBarrier, kForceGap, kForceNextGap };
@@ -47,6 +48,16 @@ void Horizon::plan_outputs(const Point& plan, VectorRef values) const {
     values[k] = plan.x[kStage * (k + 1) + kZ] / kLength;
     values[n + k] = plan.x[kStage * k + kLambda];
   }
+}
+
+std::vector<std::string> Horizon::trajectory_columns() const {
+  return {"z", "v", "plane", "gap_plane", "lambda_plane", "mode_plane", "w", "energy"};
+}
+
+void Horizon::trajectory(const Point& plan, int k, VectorRef values) const {
+  const auto state = plan.x.segment<kStates>(kStage * k), decided = plan.x.segment<kStates>(kStage * std::min(k, parameters_.intervals - 1) + kW);
+  const double z = state[kZ] / kLength, v = state[kV] / kSpeed, plane = plane_ / kLength, force = decided[kLambda - kW];
+  values << z, v, plane, plane - z, force, force > kPressing ? 2 : 0, decided[0], parameters_.mass * v * v / 2;
 }
 
 Stages Horizon::stages() const {

@@ -49,6 +49,8 @@ class Horizon final : public HorizonProgram {
   int num_plan_outputs() const override { return 2 * parameters_.intervals; }
   std::string plan_output_name(int i) const override;
   void plan_outputs(const Point& plan, VectorRef values) const override;
+  std::vector<std::string> trajectory_columns() const override;
+  void trajectory(const Point& plan, int k, VectorRef values) const override;
 
   int num_variables() const override { return kStage * parameters_.intervals + kStates; }
   int num_constraints() const override { return kRows * parameters_.intervals; }

@@ -62,7 +62,7 @@ void PlanePlant::measure(VectorRef values) {
 }
 
 std::string PlanePlant::output_name(int i) const {
-  static const char* const kNames[] = {"z", "v", "plane", "gap", "lambda"};
+  static const char* const kNames[] = {"z", "v", "plane", "gap_plane", "lambda_plane"};
   return kNames[i];
 }
 

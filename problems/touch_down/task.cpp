@@ -1,5 +1,7 @@
 #include "tenon/problems/touch_down/task.hpp"
 
+#include <cmath>
+
 #include "tenon/problems/toml/checked_keys.hpp"
 #include "tenon/problems/touch_down/horizon.hpp"
 #include "tenon/problems/touch_down/plane_estimator.hpp"
@@ -65,16 +67,27 @@ Scenery scenery_of(const World& world, const Parameters& horizon) {
   scenery.bodies.push_back(believed);
   scenery.ghosts = {{.body = "wrist", .count = horizon.intervals, .position = {0, "plan_z#", 0}}};
   scenery.lenses = {{.name = "contact", .body = "plane", .extent = 6e-3}};
-  scenery.arrows = {{.name = "contact", .at = {.body = "wrist"}, .vector = {0, SceneryValue("lambda", {0, -1}), 0}, .frame = "world"}};
+  scenery.arrows = {{.name = "contact", .at = {.body = "wrist"}, .vector = {0, SceneryValue("lambda_plane", {0, -1}), 0}, .frame = "world"}};
   const auto plan = [&](const std::string& columns) { return std::vector<SceneryPlot::Foresight>{{columns, horizon.intervals, horizon.step}}; };
-  scenery.plots = {{.title = "Contact force and plan", .unit = "N", .columns = {"lambda"}, .foresights = plan("plan_force#")},
+  scenery.plots = {{.title = "Contact force and plan", .unit = "N", .columns = {"lambda_plane"}, .foresights = plan("plan_force#")},
                    {.title = "Position and plan; the plane, and where it is believed", .unit = "m",
                     .columns = {"z", "plane", "plane_believed"}, .bands = {{"plane_believed", "cov_plane_believed_plane_believed"}},
                     .foresights = plan("plan_z#")},
-                   {.title = "Gap between wrist and plane", .unit = "m", .columns = {"gap"}},
+                   {.title = "Gap between wrist and plane", .unit = "m", .columns = {"gap_plane"}},
                    {.title = "Command", .unit = "m/s^2", .columns = {"w"}},
                    {.title = "Speed", .unit = "m/s", .columns = {"v"}}};
   return scenery;
+}
+
+/// Down, and pressed for a while, onto the plane where it is.
+std::unique_ptr<HorizonProgram> whole_touch_down(Parameters parameters, const World& world) {
+  constexpr double kTime = 1.2;  // s
+  parameters.intervals = static_cast<int>(std::ceil(kTime / parameters.step));
+  auto program = std::make_unique<Horizon>(parameters, world.start, world.plane);
+  Vector measured = Vector::Zero(program->num_measurements());
+  measured[0] = world.start;
+  program->observe(0, measured, Eigen::Vector2d(world.plane, world.wanted_force));
+  return program;
 }
 
 }  // namespace
@@ -97,6 +110,7 @@ ControlTask make_task(const toml_file::Document& document) {
   task.duration = world.duration;
   task.plant = std::make_unique<PlanePlant>(world);
   task.program = std::make_unique<Horizon>(parameters, world.start, knowledge.plane - knowledge.uncertainty);
+  task.whole_program = whole_touch_down(parameters, world);
   task.estimator = std::make_unique<PlaneEstimator>(knowledge);
   for (Options* options : task.options.all()) {
     options->tolerance = 1e-4;  // in cm, dm/s, N and N cm: a micrometre, 10 um/s, 0.1 mN
