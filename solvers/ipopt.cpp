@@ -162,10 +162,11 @@ void complete_fixed_variables(const Nlp& problem, const Bounds& bounds, Point& p
   point.z = (bounds.x_lower.array() == bounds.x_upper.array()).select(-balance, point.z);
 }
 
-/// What Ipopt says about its end, in our words; where it claims no more than that it could not go on, the ruler speaks.
+/// What Ipopt says about its end, in our words. It judges the problem as it has scaled it: what is solved there need not be so by the ruler.
+/// Where it claims no more than that it could not go on, the ruler speaks.
 Status status_of(Ipopt::ApplicationReturnStatus code, const TenonTnlp& tnlp, const KktResidual& residual, double tolerance) {
   switch (code) {
-    case Ipopt::Solve_Succeeded: return Status::solved;
+    case Ipopt::Solve_Succeeded: return residual.max_scaled() <= tolerance ? Status::solved : Status::acceptable;
     case Ipopt::Infeasible_Problem_Detected: return Status::infeasible;
     case Ipopt::Diverging_Iterates: return Status::unbounded;
     case Ipopt::User_Requested_Stop: return tnlp.out_of_time() ? Status::time_limit : Status::stopped;
