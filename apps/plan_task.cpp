@@ -54,7 +54,8 @@ Scenery scenery_of_plan(Scenery scenery, const std::vector<std::string>& columns
 int plan_task(const Arguments& arguments) {
   const ControlTask task = make_task(arguments.names.front(), arguments.set);
   if (!task.whole_program) throw std::invalid_argument(task.name + ": has nothing to plan, its commands are a script");
-  const HorizonProgram& program = *task.whole_program;
+  const std::unique_ptr<HorizonProgram> whole = task.whole_program();
+  const HorizonProgram& program = *whole;
   const std::string solver = arguments.solver.value_or(default_solver());
   Observers observers(arguments);
   Options options = arguments.options({.scaling = task.options.cold.scaling});

@@ -41,7 +41,7 @@ struct ControlTask {
   double duration = 0;  // s, after which a run ends whatever came of it
   std::unique_ptr<Plant> plant;
   std::unique_ptr<HorizonProgram> program;        // null where the commands are a script: then the first baseline
-  std::unique_ptr<HorizonProgram> whole_program;  // from the start to the end, the scene's own world known: one plan; null like `program`
+  std::function<std::unique_ptr<HorizonProgram>()> whole_program;  // from the start to the end, the scene's own world known: one plan
   std::unique_ptr<Estimator> estimator;           // null where the measurements say it all, or `estimation` stands for it
   std::unique_ptr<EstimationProblem> estimation;  // to be looked back over by a moving horizon
   HorizonOptions options;                         // how the program is solved, unless the caller says otherwise

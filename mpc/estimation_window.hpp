@@ -3,8 +3,8 @@
 //     min   1/2 |W (xi_0 - m)|^2 + 1/2 sum |r_k(x_k)|^2 + 1/2 sum |w_k|^2        s.t.   phi_k(xi_k, w_k) - xi_{k+1} = 0
 //
 //     xi: x, or the logarithm of what is positive, in units s of the prior's deviations
-//     r_k = (h(x_k) - y_k) / noise           phi_k: where x leads, as xi           w_k: ripple of the commands and drift, in their
-//     deviations
+//     r_k = (h(x_k) - y_k) / noise           phi_k: where x leads, as xi
+//     w_k: ripple of the commands and drift, in their deviations
 //
 // The squares of prior and measurements are rows that give way (compliance 1), so that their multipliers are the residuals. What was not
 // measured has weight 0. Variables are ordered xi_0 w_0 xi_1 ... xi_N, rows: prior, then r_k and the dynamics by interval. Hessian: Gauss

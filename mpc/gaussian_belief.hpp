@@ -1,8 +1,9 @@
 // What is believed of a vector: a mean and a covariance, to which linear measurements and motions are added one by one.
 //
-//     v = c x + e,  e ~ N(0, 1):      s = 1 + c P c',   g = P c'/s,     m += g (v - c m),     P -= s g g' (moving_horizon.md, 3) x+ = b + A
-//     x + G w + v,  w ~ N(0, I),  v ~ N(0, diag q):      m+ = b + A m,   P+ = A P A' + G G' + diag q
+//     v = c x + e,  e ~ N(0, 1):                             s = 1 + c P c',   g = P c'/s,     m += g (v - c m),     P -= s g g'
+//     x+ = b + A x + G w + v,  w ~ N(0, I),  v ~ N(0, diag q):     m+ = b + A m,   P+ = A P A' + G G' + diag q
 //
+// moving_horizon.md, section 3
 // [R. E. Kalman, J. Basic Eng. 82 (1960) 35]; values measured one at a time, so that nothing is inverted.
 #pragma once
 

@@ -1,7 +1,7 @@
 // What the delta's wrist carries and what its motors rub, as parameters of the motion that motor angles and torques tell.
 //
-//     y'' = J_c^-1 ( z'' - J_c' y' ),    z'' of problems/delta/wrist_dynamics.hpp with payload m and damping d of the motors,    m' = d' =
-//     0
+//     y'' = J_c^-1 ( z'' - J_c' y' ),    z'' of problems/delta/wrist_dynamics.hpp with payload m and damping d of the motors
+//     m' = d' = 0
 //
 // y = (q11, q21, q31), measured; the torques are commanded. Description: delta_payload.md.
 #pragma once

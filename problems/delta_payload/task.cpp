@@ -59,14 +59,6 @@ Parameters read_parameters(const Table& table) {
   return p;
 }
 
-Eigen::Vector2d median_and_deviation(const Table& table, const std::string& key) {
-  const Eigen::Vector2d pair(table.numbers(key, 2).data());
-  if (!(pair.minCoeff() > 0)) {
-    throw InputError(table.position(key), "a median or a deviation that is not positive", "[median, deviation], both more than 0");
-  }
-  return pair;
-}
-
 }  // namespace
 
 ControlTask make_task(const toml_file::Document& document) {
@@ -76,7 +68,8 @@ ControlTask make_task(const toml_file::Document& document) {
   const Table carried = required_table(root, "carried", {"payload", "damping"});
   const Table believed = required_table(root, "believed", {"payload", "damping"});
   const Eigen::Vector2d stated(positive(carried, "payload", 0), positive(carried, "damping", 0));
-  const Eigen::Vector2d payload = median_and_deviation(believed, "payload"), damping = median_and_deviation(believed, "damping");
+  const Eigen::Vector2d payload = centre_and_deviation(believed, "payload", "median"),
+                        damping = centre_and_deviation(believed, "damping", "median");
 
   ControlTask task;
   try {

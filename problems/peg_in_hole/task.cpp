@@ -133,7 +133,7 @@ ControlTask make_task(const toml_file::Document& document) {
   task.duration = positive(parameters, "duration", 5);
   task.plant = make_plant(world, holder);
   task.program = std::make_unique<AssemblyProgram>(problem);
-  task.whole_program = std::make_unique<AssemblyProgram>(whole_insertion(problem, world));
+  task.whole_program = [=] { return std::make_unique<AssemblyProgram>(whole_insertion(problem, world)); };
   task.estimator = std::make_unique<HoleEstimator>(belief);
   // The rows are well scaled as they are; a plan that is 0.5 mm or N off still moves the peg the right way.
   for (Options* options : task.options.all()) {

@@ -53,10 +53,7 @@ Prior read_prior(const Table& root) {
   prior.deviation[kFinger] = 1e-4;                                    // m: where it starts
   prior.deviation[kFingerRate] = prior.deviation[kBlockRate] = 0.01;  // m/s: both are at rest, as far as one sees
   for (const auto& [key, i] : {std::pair{"place", kBlock}, {"mass", kBlockMass}, {"friction", kFriction}}) {
-    const std::vector<double> pair = table.numbers(key, 2);
-    if (!(pair[0] > 0 && pair[1] > 0)) {
-      throw InputError(table.position(key), "a mean or a deviation that is not positive", "[mean, deviation], both more than 0");
-    }
+    const Eigen::Vector2d pair = centre_and_deviation(table, key, "mean");
     prior.mean[i] = pair[0];
     prior.deviation[i] = pair[1];
   }

@@ -10,19 +10,25 @@ namespace {
 
 constexpr int kStates = 4, kStage = 5;  // x, and u behind it
 
-/// f and its derivatives by p.
-struct WallForce {
+/// A function of one number, and its derivatives.
+struct Derivatives {
   double value, slope, curvature;
 };
 
 // r = (s + h)/2,  r' = (1 + s/h)/2,  r'' = delta^2 / (2 h^3)   with  h = sqrt(s^2 + delta^2)
-WallForce rounded_wall_force(const Parameters& parameters, double rounding, double p) {
-  WallForce f{0, 0, 0};
+Derivatives rounded(double s, double rounding) {
+  const double h = std::sqrt(s * s + rounding * rounding);
+  return {(s + h) / 2, (1 + s / h) / 2, rounding * rounding / (2 * h * h * h)};
+}
+
+/// f by p.
+Derivatives rounded_wall_force(const Parameters& parameters, double rounding, double p) {
+  Derivatives f{0, 0, 0};
   for (const double side : {1.0, -1.0}) {
-    const double s = side * p - parameters.wall, h = std::sqrt(s * s + rounding * rounding);
-    f.value += side * (s + h) / 2;
-    f.slope += (1 + s / h) / 2;
-    f.curvature += side * rounding * rounding / (2 * h * h * h);
+    const Derivatives r = rounded(side * p - parameters.wall, rounding);
+    f.value += side * r.value;
+    f.slope += r.slope;
+    f.curvature += side * r.curvature;
   }
   return {parameters.stiffness * f.value, parameters.stiffness * f.slope, parameters.stiffness * f.curvature};
 }
@@ -71,12 +77,8 @@ void Horizon::trajectory(const Point& plan, int k, VectorRef values) const {
   const State state = plan.x.segment<kStates>(kStage * k);
   const double p = model_.tip().dot(state), wall = model_.parameters().wall, stiffness = model_.parameters().stiffness;
   const double right = wall - p, left = wall + p;
-  values << state, p, stiffness * rounded(-right), stiffness * rounded(-left), right, left, right < 0 ? 2 : 0, left < 0 ? 2 : 0,
+  values << state, p, stiffness * rounded(-right, rounding_).value, stiffness * rounded(-left, rounding_).value, right, left, right < 0 ? 2 : 0, left < 0 ? 2 : 0,
       plan.x[kStage * std::min(k, intervals_ - 1) + kStates];
-}
-
-double Horizon::rounded(double s) const {
-  return (s + std::sqrt(s * s + rounding_ * rounding_)) / 2;
 }
 
 Stages Horizon::stages() const {
@@ -149,7 +151,7 @@ void Horizon::gradient(ConstVectorRef x, Workspace&, VectorRef gradient) const {
 void Horizon::constraints(ConstVectorRef x, Workspace&, VectorRef values) const {
   for (int k = 0; k < intervals_; ++k) {
     const State state = x.segment<kStates>(kStage * k);
-    const WallForce f = rounded_wall_force(model_.parameters(), rounding_, model_.tip().dot(state));
+    const Derivatives f = rounded_wall_force(model_.parameters(), rounding_, model_.tip().dot(state));
     values.segment<kStates>(kStates * k) =
         model_.a() * state + model_.b() * x[kStage * k + kStates] + model_.d() * f.value - x.segment<kStates>(kStage * (k + 1));
   }
@@ -158,7 +160,7 @@ void Horizon::constraints(ConstVectorRef x, Workspace&, VectorRef values) const 
 void Horizon::jacobian(ConstVectorRef x, Workspace&, std::span<double> values) const {
   double* out = values.data();
   for (int k = 0; k < intervals_; ++k) {
-    const WallForce f = rounded_wall_force(model_.parameters(), rounding_, model_.tip().dot(x.segment<kStates>(kStage * k)));
+    const Derivatives f = rounded_wall_force(model_.parameters(), rounding_, model_.tip().dot(x.segment<kStates>(kStage * k)));
     const Eigen::Matrix4d by_state = model_.a() + f.slope * model_.d() * model_.tip().transpose();
     for (int c = 0; c < kStates; ++c) {
       if (k > 0) *out++ = -1;
@@ -174,7 +176,7 @@ void Horizon::hessian(ConstVectorRef x, double sigma, ConstVectorRef lambda, Wor
   double* out = values.data();
   const State q = 2 * sigma * weights_.state;
   for (int k = 0; k < intervals_; ++k) {
-    const WallForce f = rounded_wall_force(model_.parameters(), rounding_, model_.tip().dot(x.segment<kStates>(kStage * k)));
+    const Derivatives f = rounded_wall_force(model_.parameters(), rounding_, model_.tip().dot(x.segment<kStates>(kStage * k)));
     const double w = lambda.segment<kStates>(kStates * k).dot(model_.d()) * f.curvature;
     *out++ = q[0] + w * model_.tip()[0] * model_.tip()[0];
     *out++ = w * model_.tip()[0] * model_.tip()[1];

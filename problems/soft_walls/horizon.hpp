@@ -49,8 +49,6 @@ class Horizon final : public HorizonProgram {
   std::string variable_name(int i) const override;
 
  private:
-  double rounded(double s) const;
-
   Model model_;
   Weights weights_;
   int intervals_;

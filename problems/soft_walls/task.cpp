@@ -102,7 +102,7 @@ ControlTask make_task(const toml_file::Document& document) {
   const int intervals = positive_integer(parameters, "intervals", 10), all = static_cast<int>(std::ceil(task.duration / task.period));
   const double rounding = positive(parameters, "rounding", 2e-3);
   task.program = std::make_unique<Horizon>(model, weights, intervals, rounding, start);
-  task.whole_program = std::make_unique<Horizon>(model, weights, all, rounding, start);
+  task.whole_program = [=] { return std::make_unique<Horizon>(model, weights, all, rounding, start); };
   // No inequality stands in this program: each iteration is a Newton step, and the rows are well scaled as they are.
   for (Options* options : task.options.all()) {
     options->tolerance = 1e-6;

@@ -39,6 +39,14 @@ int positive_integer(const Table& table, const std::string& key, int fallback) {
   return checked(table, key, value, value > 0, "1 or more");
 }
 
+Eigen::Vector2d centre_and_deviation(const Table& table, const std::string& key, const std::string& centre) {
+  const Eigen::Vector2d pair(table.numbers(key, 2).data());
+  if (!(pair.minCoeff() > 0)) {
+    throw InputError(table.position(key), "a " + centre + " or a deviation that is not positive", "[" + centre + ", deviation], both more than 0");
+  }
+  return pair;
+}
+
 std::vector<std::string> with_parameters(std::vector<std::string> overrides, const std::vector<std::string>& root_keys) {
   for (std::string& text : overrides) {
     const std::string key = text.substr(0, text.find('='));

@@ -110,7 +110,7 @@ ControlTask make_task(const toml_file::Document& document) {
   task.duration = world.duration;
   task.plant = std::make_unique<PlanePlant>(world);
   task.program = std::make_unique<Horizon>(parameters, world.start, knowledge.plane - knowledge.uncertainty);
-  task.whole_program = whole_touch_down(parameters, world);
+  task.whole_program = [=] { return whole_touch_down(parameters, world); };
   task.estimator = std::make_unique<PlaneEstimator>(knowledge);
   for (Options* options : task.options.all()) {
     options->tolerance = 1e-4;  // in cm, dm/s, N and N cm: a micrometre, 10 um/s, 0.1 mN
